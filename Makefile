@@ -1,0 +1,67 @@
+# pinwarp: `make run` opens the window on the sample bones, `make test` is what CI runs.
+
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+SCREEN := xvfb-run -a -s "-screen 0 1920x1080x24"
+# One BLAS thread: on few cores its pool only fights with everything else.
+export OPENBLAS_NUM_THREADS = 1
+export QT_API = pyside6
+
+.PHONY: run test lint types layers check picture clean help
+
+help:
+	@echo "make run      open the window on the sample bones"
+	@echo "make test     lint, types, import rules and tests, under a virtual screen"
+	@echo "make picture  draw the README's picture anew"
+	@echo "make clean    remove the environment and what was built"
+
+# Without a display the window cannot open: a picture of it is the next best thing.
+run:
+	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then \
+	  .make/system-packages && $(MAKE) --no-print-directory $(VENV)/run && exec $(BIN)/pinwarp --demo; \
+	else \
+	  echo "There is no display here: writing a picture of the sample session instead."; \
+	  .make/system-packages --screen && $(MAKE) --no-print-directory $(VENV)/run \
+	  && $(SCREEN) $(BIN)/pinwarp --demo --screenshot pinwarp-demo.png \
+	  && echo "Wrote pinwarp-demo.png"; \
+	fi
+
+test: system-for-tests $(VENV)/dev
+	$(MAKE) --no-print-directory check
+
+.PHONY: system-for-tests
+system-for-tests:
+	@PYTHON=$(PYTHON) .make/system-packages --screen
+
+check: lint types layers
+	$(SCREEN) $(BIN)/python -m pytest
+
+lint:
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+
+types:
+	$(BIN)/mypy
+
+layers:
+	$(BIN)/lint-imports
+
+picture: $(VENV)/run
+	$(SCREEN) $(BIN)/pinwarp --demo --screenshot assets/screenshot.png
+
+$(VENV)/pip:
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade "pip>=25.1"
+	@touch $@
+
+$(VENV)/run: $(VENV)/pip pyproject.toml
+	$(BIN)/python -m pip install --quiet --editable .
+	@touch $@
+
+$(VENV)/dev: $(VENV)/run
+	$(BIN)/python -m pip install --quiet --group dev
+	@touch $@
+
+clean:
+	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache dist

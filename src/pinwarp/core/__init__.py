@@ -1,0 +1,1 @@
+"""The spline and what it works on: pure functions and frozen data; no files, no screen."""

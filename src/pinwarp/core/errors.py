@@ -1,0 +1,82 @@
+"""What can go wrong, as one tree.
+
+::
+
+    PinwarpError
+    ├── LandmarkError (ValueError)      coordinates, names or counts that cannot be used
+    ├── PenaltyError (ValueError)       a penalty that is negative or not finite
+    ├── SingularSystemError             the equations have no usable solution
+    ├── MeshError (ValueError)          not a surface, or not a usable one
+    └── FileFormatError (ValueError)    a file that cannot be read; names file and line
+        └── NewerFileError              written by a newer pinwarp
+
+    PinwarpWarning (UserWarning)
+    ├── ConflictingLandmarksWarning     one place on the source, two on the destination
+    ├── NearlyPlanarWarning             the warp is unreliable far from the landmarks
+    └── PoleWarning                     an OPYNSIM penalty near or above a pole
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+class PinwarpError(Exception):
+    """Whatever pinwarp raises on purpose: its message is meant for the user."""
+
+
+class LandmarkError(PinwarpError, ValueError):
+    """Landmarks that cannot be used; the message names the row or the landmark."""
+
+
+class PenaltyError(PinwarpError, ValueError):
+    """A warping penalty that is negative or not finite."""
+
+
+class SingularSystemError(PinwarpError):
+    """The spline's equations have no usable solution at this penalty."""
+
+
+class MeshError(PinwarpError, ValueError):
+    """Arrays that do not make a triangle surface."""
+
+
+class FileFormatError(PinwarpError, ValueError):
+    """A file that cannot be read.
+
+    Parameters
+    ----------
+    path
+        The file.
+    reason
+        What is wrong with it and what to do about it, as one or two sentences.
+    line
+        The line it happened at, counted from 1, where there is one.
+    """
+
+    def __init__(self, path: str | Path, reason: str, line: int | None = None) -> None:
+        self.path = Path(path)
+        self.reason = reason
+        self.line = line
+        place = f"{self.path.name}, line {line}" if line is not None else self.path.name
+        super().__init__(f"{place}: {reason}")
+
+
+class NewerFileError(FileFormatError):
+    """A session written by a newer pinwarp: refused rather than half-read."""
+
+
+class PinwarpWarning(UserWarning):
+    """A result that can be used but should be looked at."""
+
+
+class ConflictingLandmarksWarning(PinwarpWarning):
+    """Landmarks at one place on the source that lie apart on the destination."""
+
+
+class NearlyPlanarWarning(PinwarpWarning):
+    """The source landmarks lie nearly in one plane."""
+
+
+class PoleWarning(PinwarpWarning):
+    """An OPYNSIM penalty so large that it no longer smooths."""

@@ -1,0 +1,276 @@
+"""The source landmarks, factorised once for every destination and every penalty.
+
+The saddle-point system of the thin-plate spline is solved in the space that its side conditions
+leave free (numerics: Wahba, Spline Models for Observational Data, 1990, section 2.4). With the
+centred and scaled source ``u``, ``P = [1, u] = Q R``, ``Q = [Q1 Q2]`` and ``K_ij = |u_i - u_j|``,
+the matrix ``N = -Q2^T K Q2`` is symmetric and positive definite: ``|u_i - u_j|`` is conditionally
+*negative* definite, hence the minus.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import qr, solve_triangular
+from scipy.spatial.distance import cdist
+
+from pinwarp.core.errors import LandmarkError
+from pinwarp.core.findings import Finding, FindingKind
+
+Matrix = NDArray[np.float64]
+
+# A direction whose extent is below this share of the largest is not there at all ...
+RANK_TOLERANCE = 1e-5
+# ... and below this one the landmarks are called nearly planar.
+PLANAR_TOLERANCE = 0.05
+# Landmarks closer than this share of the median spacing are reported.
+CLOSE_TOLERANCE = 1e-4
+# Squares of larger coordinates overflow.
+LARGEST_COORDINATE = 1e150
+
+
+def as_positions(values: ArrayLike, what: str) -> Matrix:
+    """Return a fresh (n, 3) float64 array of finite positions.
+
+    Parameters
+    ----------
+    values
+        (n, 3) numbers of any kind.
+    what
+        What the rows are called in a message, such as ``"source landmark"``.
+
+    Raises
+    ------
+    LandmarkError
+        When the shape is another or a row cannot be used; the message names the row.
+    """
+    try:
+        array = np.array(values, dtype=np.float64, order="C")
+    except (TypeError, ValueError) as error:
+        raise LandmarkError(f"The {what}s are not a table of numbers: {error}") from error
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise LandmarkError(f"The {what}s have the shape {array.shape} instead of (n, 3).")
+    usable = (np.abs(array) <= LARGEST_COORDINATE).all(axis=1)
+    if not usable.all():
+        row = int(np.flatnonzero(~usable)[0])
+        x, y, z = array[row].tolist()
+        raise LandmarkError(f"The {what} in row {row} is not usable: ({x}, {y}, {z}).")
+    return array
+
+
+@dataclass(frozen=True, eq=False)
+class SourceFactor:
+    """What depends on the source landmarks alone; made by :func:`factorise`.
+
+    Attributes
+    ----------
+    source : (n, 3) float64
+        The landmarks, in mesh units.
+    centre, scale
+        Their mean, and their RMS distance from it: ``u = (source - centre) / scale``.
+    directions : (r, 3)
+        Orthonormal directions that the landmarks span; r = 3 in general position.
+    findings
+        What is noteworthy about them.
+    """
+
+    source: Matrix
+    centre: Matrix
+    scale: float
+    directions: Matrix
+    findings: tuple[Finding, ...]
+    duplicates: tuple[tuple[int, int], ...]
+    reflectors: Matrix
+    triangle: Matrix
+    upper: Matrix
+    coupling: Matrix
+    bending: Matrix
+    well_spaced: bool
+
+    @property
+    def rank(self) -> int:
+        """How many directions the landmarks span: 0 a place, 1 a line, 2 a plane, 3 space."""
+        return len(self.directions)
+
+    @cached_property
+    def modes(self) -> tuple[Matrix, Matrix]:
+        """Eigenvalues of ``N`` in mesh units (ascending) and its eigenvectors as columns."""
+        values, vectors = np.linalg.eigh(self.bending)
+        return values * self.scale, vectors
+
+    @cached_property
+    def usable_modes(self) -> NDArray[np.bool_]:
+        """Modes that are not the numerical null space left by duplicate landmarks."""
+        values, _ = self.modes
+        if not len(values):
+            return np.zeros(0, dtype=bool)
+        return np.asarray(values > self.drop_tolerance * max(values[-1], 0.0))
+
+    @property
+    def drop_tolerance(self) -> float:
+        """The share of the largest eigenvalue below which a mode is dropped."""
+        return float(8 * max(len(self.source), 1) * np.finfo(np.float64).eps)
+
+    @property
+    def poles(self) -> Matrix:
+        """Penalties at which the OPYNSIM convention is singular, ascending, in mesh units."""
+        return self.modes[0][self.usable_modes]
+
+    def rotate(self, values: Matrix) -> Matrix:
+        """Return ``Q^T values``; Q is never formed (compact WY form)."""
+        V, T = self.reflectors, self.triangle
+        return values - V @ (T.T @ (V.T @ values))
+
+    def rotate_back(self, values: Matrix) -> Matrix:
+        """Return ``Q values``."""
+        V, T = self.reflectors, self.triangle
+        return values - V @ (T @ (V.T @ values))
+
+    def flexibility(self, penalty: float) -> float:
+        """Return the share of non-affine freedom left: 1 interpolates, 0 is the affine fit.
+
+        ``mean(lambda / (lambda + penalty))``, the effective degrees of freedom beyond the affine
+        ones (Wahba 1990, eq. 4.3.1), of the regularising convention. NaN without any modes.
+        """
+        values = self.poles
+        if not len(values):
+            return float("nan")
+        return float(np.mean(values / (values + penalty)))
+
+    def penalty_at(self, flexibility: float) -> float:
+        """Return the penalty that leaves that much flexibility (inverse of :meth:`flexibility`).
+
+        Parameters
+        ----------
+        flexibility
+            From 0 (gives infinity) to 1 (gives 0).
+        """
+        values = self.poles
+        if flexibility >= 1 or not len(values):
+            return 0.0
+        if flexibility <= 0:
+            return float("inf")
+        # In log(penalty) the curve is a smooth falling S: bisection never fails on it.
+        low, high = np.log(values[0]) - 40.0, np.log(values[-1]) + 40.0
+        for _ in range(100):
+            middle = 0.5 * (low + high)
+            if self.flexibility(float(np.exp(middle))) > flexibility:
+                low = middle
+            else:
+                high = middle
+        return float(np.exp(0.5 * (low + high)))
+
+
+def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
+    """Factorise a set of source landmarks.
+
+    Parameters
+    ----------
+    source
+        (n, 3) positions in mesh units, n >= 1.
+    planar
+        Treat nearly planar landmarks as planar: the affine part is then free only within the
+        plane and a similarity across it, which keeps the warp tame far from the landmarks.
+
+    Returns
+    -------
+    SourceFactor
+
+    Raises
+    ------
+    LandmarkError
+        When there are none, or a row cannot be used.
+
+    Examples
+    --------
+    >>> factorise([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]).rank
+    3
+    """
+    source = as_positions(source, "source landmark")
+    if not len(source):
+        raise LandmarkError("There are no landmark pairs: place at least one.")
+    count = len(source)
+    centre = source.mean(axis=0)
+    offsets = source - centre
+    extent = float(np.abs(offsets).max())
+    # Dividing by the extent first keeps the squares of tiny coordinates from vanishing.
+    scale = (
+        extent * float(np.sqrt(np.mean(np.sum((offsets / extent) ** 2, axis=1)))) if extent else 0
+    )
+    at_one_place = scale <= 1e-12 * float(np.abs(centre).max())
+    if at_one_place:
+        scale = 1.0
+    unit = np.zeros_like(offsets) if at_one_place else offsets / scale
+    _, extents, directions = np.linalg.svd(unit, full_matrices=False)
+    tolerance = PLANAR_TOLERANCE if planar else RANK_TOLERANCE
+    rank = 0 if at_one_place else int(np.sum(extents > tolerance * extents[0]))
+    directions = directions[:rank]
+
+    basis = np.column_stack([np.ones(count), unit @ directions.T])
+    # Fewer landmarks than columns cannot happen: n centred landmarks span n - 1 directions.
+    (packed, tau), _ = qr(basis, mode="raw")
+    columns = rank + 1
+    reflectors = np.tril(packed[:, :columns], -1)
+    reflectors[np.arange(columns), np.arange(columns)] = 1.0
+    triangle = np.zeros((columns, columns))
+    for j in range(columns):
+        triangle[j, j] = tau[j]
+        triangle[:j, j] = -tau[j] * triangle[:j, :j] @ (reflectors[:, :j].T @ reflectors[:, j])
+
+    distances = cdist(unit, unit)
+    # Q^T (-K) Q = -K + X V^T + V X^T: two thin products instead of two full ones.
+    X = distances @ reflectors @ triangle
+    X -= 0.5 * reflectors @ (triangle.T @ (reflectors.T @ X))
+    projected = np.hstack([X, reflectors]) @ np.hstack([reflectors, X]).T
+    projected -= distances
+
+    np.fill_diagonal(distances, np.inf)
+    findings, duplicates, well_spaced = _spacing(distances, scale)
+    if rank == 3 and extents[2] < PLANAR_TOLERANCE * extents[0]:
+        findings += (Finding(FindingKind.NEARLY_PLANAR, (), float(extents[2] / extents[0])),)
+    return SourceFactor(
+        source=source,
+        centre=centre,
+        scale=float(scale),
+        directions=directions,
+        findings=findings,
+        duplicates=duplicates,
+        reflectors=reflectors,
+        triangle=triangle,
+        upper=np.triu(packed[:columns, :columns]),
+        coupling=projected[:columns, columns:].copy(),
+        bending=projected[columns:, columns:].copy(),
+        well_spaced=well_spaced,
+    )
+
+
+def _spacing(
+    distances: Matrix, scale: float
+) -> tuple[tuple[Finding, ...], tuple[tuple[int, int], ...], bool]:
+    """Find landmarks at one place, and landmarks suspiciously close together."""
+    count = len(distances)
+    if count < 2:
+        return (), (), True
+    nearest = distances.min(axis=1)
+    # The largest eigenvalue is at most n times the largest distance (about 6 in these units).
+    same = 8 * count * np.finfo(np.float64).eps * count
+    close = max(CLOSE_TOLERANCE * float(np.median(nearest)), same)
+    if nearest.min() > close:
+        return (), (), True
+    rows, others = np.nonzero(np.triu(distances <= close, 1))
+    pairs = [(int(i), int(j)) for i, j in zip(rows, others, strict=True)]
+    duplicates = tuple(pair for pair in pairs if distances[pair] <= same)
+    findings = tuple(
+        Finding(FindingKind.CLOSE, pair, float(distances[pair] * scale))
+        for pair in pairs
+        if pair not in duplicates
+    )
+    return findings, duplicates, False
+
+
+def solve_upper(factor: SourceFactor, values: Matrix) -> Matrix:
+    """Return ``R^-1 values``, the affine part from the top block."""
+    return np.asarray(solve_triangular(factor.upper, values, check_finite=False))

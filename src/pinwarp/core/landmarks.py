@@ -1,0 +1,163 @@
+"""The landmark: a named place with a source position, a destination position, or both."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pinwarp.core.errors import LandmarkError
+
+Position = tuple[float, float, float]
+
+
+class Side(StrEnum):
+    """Which of the two meshes a position is on."""
+
+    SOURCE = "source"
+    DESTINATION = "destination"
+
+    @property
+    def other(self) -> Side:
+        """The opposite side."""
+        return Side.DESTINATION if self is Side.SOURCE else Side.SOURCE
+
+
+class Role(StrEnum):
+    """What a landmark is for."""
+
+    PAIR = "pair"
+    PASSENGER = "passenger"
+
+
+class LandmarkState(StrEnum):
+    """How far a landmark has come; every state is drawn with its own shape."""
+
+    PAIRED = "paired"
+    SOURCE_ONLY = "source only"
+    DESTINATION_ONLY = "destination only"
+    EMPTY = "not placed"
+    PASSENGER = "passenger"
+    DISABLED = "disabled"
+
+
+@dataclass(frozen=True, slots=True)
+class Landmark:
+    """One named place.
+
+    Parameters
+    ----------
+    name
+        Unique within a session, not empty.
+    source, destination
+        Position on either mesh in that mesh's own frame and unit, or None where not placed yet.
+    role
+        A pair takes part in the solve; a passenger is only carried along by the warp.
+    enabled
+        A disabled pair is kept but does not take part.
+    note
+        Free text.
+    extra
+        Columns of a session file that this version does not know, kept as they came.
+
+    Raises
+    ------
+    LandmarkError
+        For an empty name or a coordinate that is not finite.
+
+    Examples
+    --------
+    >>> fovea = Landmark("fovea_capitis", source=(1.0, 2.0, 3.0))
+    >>> fovea.state.value
+    'source only'
+    >>> fovea.placed(Side.DESTINATION, (4.0, 5.0, 6.0)).is_pair
+    True
+    """
+
+    name: str
+    source: Position | None = None
+    destination: Position | None = None
+    role: Role = Role.PAIR
+    enabled: bool = True
+    note: str = ""
+    extra: tuple[tuple[str, str], ...] = ()
+
+    def __post_init__(self) -> None:
+        if not self.name.strip():
+            raise LandmarkError("A landmark needs a name.")
+        for side in Side:
+            position = self.position(side)
+            if position is not None and not all(math.isfinite(x) for x in position):
+                raise LandmarkError(
+                    f"{self.name}: the {side.value} position {position} is not finite."
+                )
+
+    def position(self, side: Side) -> Position | None:
+        """Return the position on one side, or None."""
+        return self.source if side is Side.SOURCE else self.destination
+
+    def placed(self, side: Side, position: Iterable[float] | None) -> Landmark:
+        """Return this landmark with the position on one side replaced (None removes it)."""
+        value = None if position is None else as_position(position)
+        if side is Side.SOURCE:
+            return replace(self, source=value)
+        return replace(self, destination=value)
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether both positions are there."""
+        return self.source is not None and self.destination is not None
+
+    @property
+    def is_pair(self) -> bool:
+        """Whether it takes part in the solve: complete, enabled and not a passenger."""
+        return self.is_complete and self.enabled and self.role is Role.PAIR
+
+    @property
+    def state(self) -> LandmarkState:
+        """How far it has come."""
+        if self.role is Role.PASSENGER:
+            return LandmarkState.PASSENGER
+        if not self.enabled:
+            return LandmarkState.DISABLED
+        match self.source is not None, self.destination is not None:
+            case True, True:
+                return LandmarkState.PAIRED
+            case True, False:
+                return LandmarkState.SOURCE_ONLY
+            case False, True:
+                return LandmarkState.DESTINATION_ONLY
+            case _:
+                return LandmarkState.EMPTY
+
+
+def as_position(values: Iterable[float]) -> Position:
+    """Turn three numbers of any kind into a position of Python floats."""
+    x, y, z = (float(value) for value in values)
+    return (x, y, z)
+
+
+def pairs_of(landmarks: Iterable[Landmark]) -> tuple[Landmark, ...]:
+    """Return the landmarks that take part in the solve, in order."""
+    return tuple(landmark for landmark in landmarks if landmark.is_pair)
+
+
+def positions(landmarks: Sequence[Landmark], side: Side) -> NDArray[np.float64]:
+    """Return the (n, 3) positions of landmarks that all have one on that side."""
+    found = [landmark.position(side) for landmark in landmarks]
+    return np.array([p for p in found if p is not None], dtype=np.float64).reshape(-1, 3)
+
+
+def duplicate_names(landmarks: Iterable[Landmark]) -> list[str]:
+    """Return every name that occurs more than once, in order of first repetition."""
+    seen: set[str] = set()
+    repeated: dict[str, None] = {}
+    for landmark in landmarks:
+        if landmark.name in seen:
+            repeated[landmark.name] = None
+        seen.add(landmark.name)
+    return list(repeated)

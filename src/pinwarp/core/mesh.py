@@ -1,0 +1,72 @@
+"""The mesh: vertices and triangles as read-only arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pinwarp.core.errors import MeshError
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A triangle surface. Two meshes are equal only when they are the same object.
+
+    Parameters
+    ----------
+    vertices
+        (m, 3) float64, in the mesh's own frame and unit; made read-only.
+    faces
+        (t, 3) int32, indices into ``vertices``; made read-only.
+
+    Raises
+    ------
+    MeshError
+        When the arrays have other shapes, are empty, hold numbers that are not finite, or
+        a face names a vertex that does not exist.
+
+    Examples
+    --------
+    >>> triangle = Mesh([[0, 0, 0], [1, 0, 0], [0, 2, 0]], [[0, 1, 2]])
+    >>> triangle.diagonal ** 2
+    5.0
+    """
+
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.int32]
+
+    def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None:
+        points = np.array(vertices, dtype=np.float64, order="C")
+        triangles = np.array(faces, dtype=np.int32, order="C")
+        if points.ndim != 2 or points.shape[1] != 3:
+            raise MeshError(f"Vertices have the shape {points.shape} instead of (m, 3).")
+        if triangles.ndim != 2 or triangles.shape[1] != 3:
+            raise MeshError(f"Faces have the shape {triangles.shape} instead of (t, 3).")
+        if len(points) == 0 or len(triangles) == 0:
+            raise MeshError("The mesh holds no triangles.")
+        if not np.isfinite(points).all():
+            row = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
+            raise MeshError(f"Vertex {row} has a coordinate that is not finite: {points[row]}.")
+        if triangles.min() < 0 or triangles.max() >= len(points):
+            raise MeshError("A face names a vertex that does not exist.")
+        points.setflags(write=False)
+        triangles.setflags(write=False)
+        object.__setattr__(self, "vertices", points)
+        object.__setattr__(self, "faces", triangles)
+
+    def with_vertices(self, vertices: ArrayLike) -> Mesh:
+        """Return the same triangles over other vertices."""
+        return Mesh(vertices, self.faces)
+
+    @property
+    def bounds(self) -> NDArray[np.float64]:
+        """The (2, 3) lowest and highest corner of the bounding box."""
+        return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+
+    @property
+    def diagonal(self) -> float:
+        """The length of the bounding box's diagonal, in the mesh's unit."""
+        low, high = self.bounds
+        return float(np.linalg.norm(high - low))

@@ -1,0 +1,222 @@
+"""Solve the 3D thin-plate spline for any penalty, and evaluate it.
+
+``f(v) = a1 + a2 v_x + a3 v_y + a4 v_z + sum_i w_i |u_i - v|`` (Bookstein, IEEE PAMI 11 (1989);
+basis ``U(r) = r`` in 3D: Gunz, Mitteroecker and Bookstein 2005). The weights shown to the user
+belong to ``U = +r``, as in the equation, whatever the solver uses inside. The story of the
+penalty's sign is told in :mod:`pinwarp.tps3d`.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import solve_triangular
+
+from pinwarp.core import kernel
+from pinwarp.core.alignment import fit_similarity
+from pinwarp.core.errors import LandmarkError, PenaltyError, SingularSystemError
+from pinwarp.core.factor import SourceFactor, as_positions, factorise, solve_upper
+from pinwarp.core.findings import Finding, FindingKind
+
+Matrix = NDArray[np.float64]
+
+
+class PenaltyConvention(StrEnum):
+    """Which equation the warping penalty enters, and with which sign.
+
+    ``REGULARISING`` solves ``K - s I`` with ``U = +r``: it penalises at every value, from
+    interpolation at 0 to the affine fit at infinity. ``OPYNSIM`` solves the published
+    ``K + alpha I`` with ``U = +r``, as OPynSim and thin-plate-spline >= 1.2 do, poles included.
+    """
+
+    REGULARISING = "regularising"
+    OPYNSIM = "opynsim"
+
+    @property
+    def sign(self) -> int:
+        """The sign with which the penalty is added to the eigenvalues of ``N``."""
+        return 1 if self is PenaltyConvention.REGULARISING else -1
+
+
+@dataclass(frozen=True, eq=False)
+class Spline:
+    """A solved thin-plate spline.
+
+    Attributes
+    ----------
+    source : (n, 3) float64
+        The source landmarks, in mesh units.
+    weights : (n, 3) float64
+        ``w_i`` for ``U = +r`` (dimensionless).
+    affine : (4, 3) float64
+        Rows ``a1 ... a4``; ``a1`` in mesh units of the destination.
+    penalty, convention
+        What it was solved with.
+    findings
+        What the solve noticed.
+    """
+
+    source: Matrix
+    weights: Matrix
+    affine: Matrix
+    penalty: float
+    convention: PenaltyConvention
+    findings: tuple[Finding, ...] = ()
+
+    def evaluate(self, points: ArrayLike) -> Matrix:
+        """Warp (m, 3) points in double precision."""
+        return kernel.evaluate(self.source, self.weights, self.affine, points)
+
+
+def check_penalty(penalty: float) -> float:
+    """Return the penalty as a float; infinity, the affine fit, is allowed."""
+    value = float(penalty)
+    if math.isnan(value) or value < 0:
+        raise PenaltyError(f"The warping penalty is {value}; it must be 0 or more.")
+    return value
+
+
+def solve(
+    factor: SourceFactor,
+    destination: ArrayLike,
+    penalty: float = 0.0,
+    convention: PenaltyConvention = PenaltyConvention.REGULARISING,
+) -> Spline:
+    """Solve the spline that takes the factorised source landmarks to a destination.
+
+    Parameters
+    ----------
+    factor
+        The source landmarks, from :func:`~pinwarp.core.factor.factorise`.
+    destination
+        (n, 3) destination landmarks, in the destination's mesh unit.
+    penalty
+        The warping penalty, a length in mesh units; infinity is the affine fit.
+    convention
+        The equation that it enters.
+
+    Returns
+    -------
+    Spline
+
+    Raises
+    ------
+    LandmarkError
+        When the counts differ or a row cannot be used.
+    PenaltyError
+        When the penalty is negative or NaN.
+    SingularSystemError
+        When an OPYNSIM penalty hits a pole.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> source = np.vstack([np.zeros(3), np.eye(3), np.ones(3)])
+    >>> spline = solve(factorise(source), source + 0.1 * source ** 2)
+    >>> np.allclose(spline.evaluate(source), source + 0.1 * source ** 2)
+    True
+    """
+    destination = as_positions(destination, "destination landmark")
+    if len(destination) != len(factor.source):
+        raise LandmarkError(
+            f"There are {len(factor.source)} source landmarks but {len(destination)} destination "
+            "landmarks: each needs its counterpart."
+        )
+    penalty = check_penalty(penalty)
+    target = destination.mean(axis=0)
+    displacement = destination - target
+    linear = np.zeros((3, 3))
+    if factor.rank < 3:
+        # The affine part is open: start from a similarity, the spline adds only what data fix.
+        similarity = fit_similarity(factor.source, destination)
+        linear = similarity.scale * similarity.rotation.T
+        displacement = displacement - (factor.source - factor.centre) @ linear
+
+    columns = factor.rank + 1
+    rotated = factor.rotate(displacement / factor.scale)
+    gamma, findings = _bend(factor, rotated[columns:], penalty, convention)
+    affine = solve_upper(factor, rotated[:columns] - factor.coupling @ gamma)
+    weights = -factor.rotate_back(np.vstack([np.zeros((columns, 3)), gamma]))
+    linear = linear + factor.directions.T @ affine[1:]
+    offset = target + factor.scale * affine[0] - factor.centre @ linear
+    coefficients = np.vstack([offset, linear])
+    if not (np.isfinite(weights).all() and np.isfinite(coefficients).all()):
+        raise SingularSystemError(
+            "The landmarks' coordinates are too large or too far apart to solve with: "
+            "check the unit and the outliers."
+        )
+    return Spline(
+        source=factor.source,
+        weights=weights,
+        affine=coefficients,
+        penalty=penalty,
+        convention=convention,
+        findings=(*factor.findings, *_conflicts(factor, destination, penalty), *findings),
+    )
+
+
+def _bend(
+    factor: SourceFactor, values: Matrix, penalty: float, convention: PenaltyConvention
+) -> tuple[Matrix, tuple[Finding, ...]]:
+    """Solve ``(N +- penalty I) gamma = values``, the part of the system beyond the affine one."""
+    if not len(values) or math.isinf(penalty):
+        return np.zeros_like(values), ()
+    regularising = convention is PenaltyConvention.REGULARISING or penalty == 0
+    if regularising and factor.well_spaced and "modes" not in factor.__dict__:
+        # One solve alone: Cholesky is a tenth of the eigendecomposition's work.
+        shifted = factor.bending + (penalty / factor.scale) * np.eye(len(values))
+        # numpy's Cholesky frees the GIL where scipy's holds it; clustered landmarks may defeat it.
+        with contextlib.suppress(np.linalg.LinAlgError):
+            lower = np.linalg.cholesky(shifted)
+            half = solve_triangular(lower, values, lower=True, check_finite=False)
+            return solve_triangular(lower, half, lower=True, trans=1, check_finite=False), ()
+    eigenvalues, vectors = factor.modes
+    shifts = eigenvalues + convention.sign * penalty
+    largest = max(float(eigenvalues[-1]), 0.0)
+    usable = np.abs(shifts) > factor.drop_tolerance * largest
+    findings: tuple[Finding, ...] = ()
+    if not regularising:
+        findings = _check_poles(factor, penalty)
+    inverse = np.divide(factor.scale, shifts, out=np.zeros_like(shifts), where=usable)
+    return vectors @ (inverse[:, None] * (vectors.T @ values)), findings
+
+
+def _check_poles(factor: SourceFactor, penalty: float) -> tuple[Finding, ...]:
+    """Refuse an OPYNSIM penalty on a pole, and report one that no longer smooths."""
+    poles = factor.poles
+    if not len(poles) or penalty <= 0.1 * poles[0]:
+        return ()
+    nearest = float(poles[np.argmin(np.abs(poles - penalty))])
+    if abs(nearest - penalty) <= factor.drop_tolerance * float(poles[-1]):
+        raise SingularSystemError(
+            f"The warping penalty {penalty:.6g} lies on a pole of the OPYNSIM convention, where "
+            "its equations have no solution: choose another penalty or the regularising convention."
+        )
+    return (Finding(FindingKind.POLE, (), nearest),)
+
+
+def _conflicts(factor: SourceFactor, destination: Matrix, penalty: float) -> tuple[Finding, ...]:
+    """Name the landmarks at one source place whose destinations cannot all be met."""
+    if penalty > 0:
+        return ()
+    found = []
+    for i, j in factor.duplicates:
+        apart = float(np.linalg.norm(destination[i] - destination[j]))
+        if apart > 1e-9 * float(np.abs(destination).max()):
+            found.append(Finding(FindingKind.CONFLICT, (i, j), apart))
+    return tuple(found)
+
+
+def identity(source: ArrayLike = ()) -> Spline:
+    """Return the spline that leaves everything where it is."""
+    source = np.asarray(source, dtype=np.float64).reshape(-1, 3)
+    affine = np.vstack([np.zeros(3), np.eye(3)])
+    return Spline(source, np.zeros_like(source), affine, 0.0, PenaltyConvention.REGULARISING)
+
+
+__all__ = ["PenaltyConvention", "Spline", "check_penalty", "factorise", "identity", "solve"]

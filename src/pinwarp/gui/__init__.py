@@ -1,0 +1,1 @@
+"""The window: the only place that knows Qt, PyVista's plotting and VTK's rendering."""

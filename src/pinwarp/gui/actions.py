@@ -1,0 +1,101 @@
+"""The window's actions: one table of words, keys and icons that menus and toolbar are made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from qtpy.QtCore import QByteArray, QObject, QSize, Qt
+from qtpy.QtGui import QAction, QIcon, QKeySequence, QPainter, QPixmap
+from qtpy.QtSvg import QSvgRenderer
+
+from pinwarp.gui import theme
+from pinwarp.io.samples import assets_folder
+
+
+@dataclass(frozen=True)
+class ActionSpec:
+    """What an action is called, where its key is, and what it looks like."""
+
+    key: str
+    text: str
+    shortcut: str = ""
+    icon: str = ""
+    tip: str = ""
+    checkable: bool = False
+
+
+SPECS = (
+    ActionSpec("open_session", "&Open Session…", "Ctrl+O", "open", "Open a saved session"),
+    ActionSpec(
+        "open_source", "Open S&ource Mesh…", "Ctrl+1", "source", "Open the mesh that is warped"
+    ),
+    ActionSpec(
+        "open_destination",
+        "Open &Destination Mesh…",
+        "Ctrl+2",
+        "destination",
+        "Open the mesh whose shape it takes",
+    ),
+    ActionSpec("open_sample", "Open Sample &Bones", "", "", "Two femurs to try things on"),
+    ActionSpec("save", "&Save Session", "Ctrl+S", "save", "Save the session"),
+    ActionSpec("save_as", "Save Session &As…", "Ctrl+Shift+S"),
+    ActionSpec("import_source", "Source Landmarks…", "Ctrl+Shift+1", "", "From a CSV file"),
+    ActionSpec("import_destination", "Destination Landmarks…", "Ctrl+Shift+2", "", "From a CSV"),
+    ActionSpec("import_pairs", "Landmark Pairs…", "", "", "From a CSV file with both sides"),
+    ActionSpec("export_source", "Source Landmarks…"),
+    ActionSpec("export_destination", "Destination Landmarks…"),
+    ActionSpec("export_pairs", "Landmark Pairs…"),
+    ActionSpec(
+        "export_mesh", "&Export Warped Mesh…", "Ctrl+E", "export", "Save the warped source mesh"
+    ),
+    ActionSpec("quit", "&Quit", "Ctrl+Q"),
+    ActionSpec("undo", "&Undo", "Ctrl+Z", "undo"),
+    ActionSpec("redo", "&Redo", "Ctrl+Shift+Z", "redo"),
+    ActionSpec("rename", "Re&name Landmark", "F2"),
+    ActionSpec("delete_side", "&Delete Position", "Del", "delete", "On the selected side only"),
+    ActionSpec("delete_landmark", "Delete &Landmark", "Ctrl+Del", "", "On both sides"),
+    ActionSpec("select_none", "Select &None", "Esc"),
+    ActionSpec("overlay", "Show &Warped Source", "W", "overlay", "Over the destination", True),
+    ActionSpec("fit", "&Fit Both Views", "Home", "fit", "Look at both bones as a whole"),
+    ActionSpec("about", "&About pinwarp"),
+    ActionSpec("about_penalty", "About the Warping &Penalty"),
+)
+
+
+def make_actions(parent: QObject) -> dict[str, QAction]:
+    """Return the actions by their keys, each with a tip that names its shortcut."""
+    actions: dict[str, QAction] = {}
+    for spec in SPECS:
+        action = QAction(spec.text, parent)
+        action.setObjectName(spec.key)
+        action.setCheckable(spec.checkable)
+        words = spec.tip or spec.text.replace("&", "").rstrip("…")
+        if spec.shortcut:
+            action.setShortcut(QKeySequence(spec.shortcut))
+            words = f"{words} ({spec.shortcut})"
+        action.setToolTip(words)
+        if spec.icon:
+            action.setIcon(icon(spec.icon))
+        actions[spec.key] = action
+    # A second habit for the same thing.
+    actions["redo"].setShortcuts([QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")])
+    actions["delete_side"].setShortcuts([QKeySequence("Del"), QKeySequence("Backspace")])
+    return actions
+
+
+def icon(name: str) -> QIcon:
+    """Return an icon of the project's own, in the colour of the window's text."""
+    text = (assets_folder() / "icons" / f"{name}.svg").read_text(encoding="utf-8")
+    result = QIcon()
+    normal = theme.text_colour().name()
+    for mode, opacity in ((QIcon.Mode.Normal, 1.0), (QIcon.Mode.Disabled, 0.35)):
+        renderer = QSvgRenderer(QByteArray(text.replace("currentColor", normal).encode()))
+        for size in (20, 40, 64):
+            pixmap = QPixmap(QSize(size, size))
+            pixmap.fill(Qt.GlobalColor.transparent)
+            painter = QPainter(pixmap)
+            painter.setOpacity(opacity)
+            renderer.render(painter)
+            painter.end()
+            result.addPixmap(pixmap, mode)
+    return result

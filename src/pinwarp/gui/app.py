@@ -1,0 +1,132 @@
+"""Start the window, or draw it into a picture and leave."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+import platformdirs
+from qtpy.QtCore import QEventLoop, QSettings, Qt, QTimer
+from qtpy.QtWidgets import QApplication
+from threadpoolctl import threadpool_limits
+
+from pinwarp.core import kernel
+from pinwarp.gui.dialogs import Dialogs
+from pinwarp.gui.documents import Opening
+from pinwarp.gui.main_window import MainWindow
+from pinwarp.io.samples import sample_session
+
+# Drawing a million triangles in software takes a while; a minute means that something hangs.
+_LONGEST_WAIT_MS = 60_000
+_WARM_UP_AFTER_MS = 1_500
+
+
+class PrintedMessages(Dialogs):
+    """Says on the terminal what would wait for a click: for pictures without a user."""
+
+    def __init__(self) -> None:
+        self.errors: list[str] = []
+
+    def ask_missing_mesh(self, side: str, path: Path) -> Path | None:
+        """Go on without the mesh, and say so."""
+        self.tell_error("Mesh not found", f"The {side} mesh {path} is not there.")
+        return None
+
+    def tell_error(self, title: str, text: str) -> None:
+        """Print an error."""
+        self.errors.append(text)
+        print(f"{title}: {text}", file=sys.stderr)
+
+    def tell(self, title: str, text: str, details: str = "") -> None:
+        """Print a message."""
+        print("\n".join(filter(None, (f"{title}: {text}", details))), file=sys.stderr)
+
+
+def make_application() -> QApplication:
+    """Return the one QApplication, set up for VTK."""
+    existing = QApplication.instance()
+    if isinstance(existing, QApplication):
+        return existing
+    # Else a view moved into a floating dock loses its context and crashes.
+    QApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
+    application = QApplication(["pinwarp"])
+    application.setApplicationName("pinwarp")
+    application.setStyle("fusion")
+    return application
+
+
+def user_settings() -> QSettings:
+    """Return the settings in the user's configuration folder."""
+    folder = platformdirs.user_config_path("pinwarp", ensure_exists=True)
+    return QSettings(str(folder / "settings.ini"), QSettings.Format.IniFormat)
+
+
+def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None) -> int:
+    """Open the window on some files.
+
+    Parameters
+    ----------
+    opening
+        The files.
+    demo
+        Open the sample bones.
+    screenshot
+        Draw the window into this PNG and leave.
+
+    Returns
+    -------
+    int
+        The exit code.
+    """
+    application = make_application()
+    # The spline's own threads and BLAS's would fight over the cores.
+    with threadpool_limits(limits=1, user_api="blas"):
+        dialogs = PrintedMessages() if screenshot is not None else None
+        window = MainWindow(user_settings(), dialogs)
+        window.show()
+        if demo:
+            window.documents.open_session(sample_session(), as_new=True)
+        else:
+            window.documents.open(opening)
+        if screenshot is None:
+            # Loading numba takes a second of the interpreter's time: after the first picture.
+            warm_up = threading.Thread(target=kernel.warm_up, daemon=True)
+            QTimer.singleShot(_WARM_UP_AFTER_MS, warm_up.start)
+            return int(application.exec())
+        saved = save_picture(window, screenshot)
+        failed = not saved or bool(dialogs is not None and dialogs.errors)
+        window.editor.replace_all(window.editor.session, None)
+        window.close()
+        return 1 if failed else 0
+
+
+def save_picture(window: MainWindow, path: Path) -> bool:
+    """Wait until everything is drawn and save a picture of the window."""
+    if not _wait_until(lambda: window.is_settled):
+        print("pinwarp: gave up waiting for the picture", file=sys.stderr)
+        return False
+    # One more turn for the last repaint.
+    _wait(150)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if not window.grab().save(str(path)):
+        print(f"pinwarp: cannot write {path}", file=sys.stderr)
+        return False
+    return True
+
+
+def _wait(milliseconds: int) -> None:
+    loop = QEventLoop()
+    QTimer.singleShot(milliseconds, loop.quit)
+    loop.exec()
+
+
+def _wait_until(condition: Callable[[], bool]) -> bool:
+    waited = 0
+    while not condition():
+        _wait(20)
+        waited += 20
+        if waited > _LONGEST_WAIT_MS:
+            return False
+    return True

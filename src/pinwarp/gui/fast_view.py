@@ -1,0 +1,48 @@
+"""A PyVista view that renders exactly once per paint.
+
+pyvistaqt renders once when VTK asks and again in ``paintGL``. Here VTK's request only schedules
+a paint; however many come, one turn of the event loop renders once.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pyvistaqt import QtInteractor
+from qtpy.QtWidgets import QWidget
+
+
+class FastView(QtInteractor):
+    """One viewport's canvas."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        # Multisampling costs 3-5 times the frame on software GL; markers are antialiased by Qt.
+        super().__init__(parent, auto_update=False, multi_samples=0)
+        # QtInteractor would add dropped meshes by itself.
+        self.setAcceptDrops(False)
+        interactor = self.iren.interactor
+        interactor.EnableRenderOff()
+        self._vtk_observers.append(
+            (interactor, interactor.AddObserver("RenderEvent", self._on_render_request))
+        )
+        self.renders = 0
+
+    def _on_render_request(self, _caller: object, _event: str) -> None:
+        if not self._in_paint:
+            self.update()
+
+    def paintGL(self) -> None:
+        """Render, here and nowhere else."""
+        interactor = self._Iren
+        interactor.EnableRenderOn()
+        self.renders += 1
+        try:
+            super().paintGL()
+        finally:
+            interactor.EnableRenderOff()
+
+    def render(self, *_args: Any, **_kwargs: Any) -> None:
+        """Schedule a paint; PyVista calls this all over the place."""
+        if not getattr(self, "_closed", False):
+            self._rendered = True
+            self.update()

@@ -1,0 +1,169 @@
+"""Work off the UI thread: the latest request wins, and one slow thing at a time with progress."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from qtpy.QtCore import QObject, QRunnable, QThreadPool, Signal
+
+from pinwarp.core.errors import PinwarpError
+
+
+class Cancelled(PinwarpError):
+    """The user cancelled a job."""
+
+
+class _Outcome(QObject):
+    """Carries a result across threads; signals between threads are queued by Qt."""
+
+    finished = Signal(int, object, object)
+    progressed = Signal(float, str)
+
+
+class _Work(QRunnable):
+    def __init__(self, number: int, function: Callable[[], Any], outcome: _Outcome) -> None:
+        super().__init__()
+        self._number = number
+        self._function = function
+        self._outcome = outcome
+
+    def run(self) -> None:
+        result, error = None, None
+        try:
+            result = self._function()
+        except Exception as exception:  # handed to the UI thread, which shows or raises it
+            error = exception
+        try:
+            self._outcome.finished.emit(self._number, result, error)
+        except RuntimeError:  # the window closed while this was computed
+            return
+
+
+class LatestWins(QObject):
+    """Computes at most one request at a time and remembers only the newest one waiting.
+
+    Parameters
+    ----------
+    function
+        Called with a request in the worker thread; its result arrives by ``computed``.
+    """
+
+    computed = Signal(object)
+    failed = Signal(object)
+
+    def __init__(self, function: Callable[[Any], Any], parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._function = function
+        self._pool = QThreadPool(self)
+        self._pool.setMaxThreadCount(1)
+        self._outcome = _Outcome()
+        self._outcome.finished.connect(self._on_finished)
+        self._waiting: list[Any] = []
+        self._busy = False
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether nothing is being computed or waiting."""
+        return not self._busy
+
+    def request(self, request: Any) -> None:
+        """Ask for a result; a request still waiting is dropped for this one."""
+        if self._busy:
+            self._waiting = [request]
+        else:
+            self._start(request)
+
+    def _start(self, request: Any) -> None:
+        self._busy = True
+        self._pool.start(_Work(0, lambda: self._function(request), self._outcome))
+
+    def _on_finished(self, _number: int, result: Any, error: Exception | None) -> None:
+        self._busy = False
+        if self._waiting:
+            self._start(self._waiting.pop())
+        if error is not None:
+            self.failed.emit(error)
+        else:
+            self.computed.emit(result)
+
+    def shut_down(self) -> None:
+        """Forget what waits and let the running computation end."""
+        self._waiting.clear()
+        self._outcome.finished.disconnect(self._on_finished)
+        self._pool.waitForDone()
+
+
+class SlowJob(QObject):
+    """Runs slow things one after the other, each with progress and a way to cancel it."""
+
+    started = Signal(str)
+    progressed = Signal(float, str)
+    ended = Signal()
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._pool = QThreadPool(self)
+        self._pool.setMaxThreadCount(1)
+        self._outcome = _Outcome()
+        self._outcome.finished.connect(self._on_finished)
+        self._outcome.progressed.connect(self.progressed)
+        self._cancel = threading.Event()
+        self._number = 0
+        self._handlers: dict[int, tuple[Callable[[Any], None], Callable[[Exception], None]]] = {}
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether nothing runs or waits."""
+        return not self._handlers
+
+    def run(
+        self,
+        title: str,
+        function: Callable[[Callable[[float, str], None]], Any],
+        done: Callable[[Any], None],
+        failed: Callable[[Exception], None],
+    ) -> None:
+        """Start a job.
+
+        Parameters
+        ----------
+        title
+            What the user reads meanwhile.
+        function
+            Runs in the worker with a progress callback (share done, stage), which raises
+            :class:`Cancelled` once the user cancelled.
+        done, failed
+            One of them is called in the UI thread.
+        """
+        if self.is_idle:
+            self._cancel.clear()
+        self._number += 1
+        self._handlers[self._number] = (done, failed)
+        self.started.emit(title)
+        self._pool.start(_Work(self._number, lambda: function(self._progress), self._outcome))
+
+    def _progress(self, share: float, stage: str) -> None:
+        if self._cancel.is_set():
+            raise Cancelled("Cancelled.")
+        self._outcome.progressed.emit(share, stage)
+
+    def cancel(self) -> None:
+        """Ask the running job to stop at its next stage."""
+        self._cancel.set()
+
+    def _on_finished(self, number: int, result: Any, error: Exception | None) -> None:
+        done, failed = self._handlers.pop(number)
+        if self.is_idle:
+            self.ended.emit()
+        if error is not None:
+            failed(error)
+        else:
+            done(result)
+
+    def shut_down(self) -> None:
+        """Cancel what runs and wait for it."""
+        self.cancel()
+        self._outcome.finished.disconnect(self._on_finished)
+        self._pool.waitForDone()

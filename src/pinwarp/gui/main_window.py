@@ -1,0 +1,362 @@
+"""The window: lays out the views, and wires actions to what they do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from qtpy.QtCore import QByteArray, QSettings, QSize, Qt
+from qtpy.QtGui import QCloseEvent
+from qtpy.QtWidgets import (
+    QDockWidget,
+    QHBoxLayout,
+    QLabel,
+    QMainWindow,
+    QMenu,
+    QProgressBar,
+    QPushButton,
+    QSizePolicy,
+    QSlider,
+    QSplitter,
+    QToolBar,
+    QWidget,
+)
+
+from pinwarp.core.landmarks import Side
+from pinwarp.gui.actions import icon, make_actions
+from pinwarp.gui.dialogs import Dialogs
+from pinwarp.gui.documents import Documents
+from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY
+from pinwarp.gui.jobs import SlowJob
+from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
+from pinwarp.gui.penalty_panel import PenaltyPanel
+from pinwarp.gui.presenter import Presenter
+from pinwarp.gui.recent_files import RecentFiles
+from pinwarp.gui.viewport import Viewport
+from pinwarp.io.samples import sample_session
+from pinwarp.session import edits
+from pinwarp.session.editor import Editor
+
+_TOOLBAR = (
+    "open_session",
+    "open_source",
+    "open_destination",
+    "save",
+    "export_mesh",
+    None,
+    "undo",
+    "redo",
+    "delete_side",
+    None,
+    "fit",
+    "overlay",
+)
+
+
+class MainWindow(QMainWindow):
+    """One window over one editor.
+
+    Parameters
+    ----------
+    settings
+        Where the layout and the recent files are remembered.
+    dialogs
+        Asks and tells; the real ones when None.
+    """
+
+    def __init__(self, settings: QSettings, dialogs: Dialogs | None = None) -> None:
+        super().__init__()
+        self._settings = settings
+        self.editor = Editor()
+        self.viewports = {side: Viewport(side) for side in Side}
+        self.model = LandmarkModel(self)
+        self.table = LandmarkTable(self.model)
+        self.panel = PenaltyPanel()
+        self.jobs = SlowJob(self)
+        self.actions_by_key = make_actions(self)
+        self._dialogs = dialogs or Dialogs(self)
+        self._recent = RecentFiles(settings)
+        self._lay_out()
+        self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
+        self.documents = Documents(
+            self.editor, self.jobs, self._dialogs, self._recent, self.presenter.keep_surface
+        )
+        self._connect()
+        self._restore_layout()
+        self._on_session()
+
+    # Layout
+
+    def _lay_out(self) -> None:
+        self.setWindowIcon(icon("pinwarp"))
+        self.resize(1280, 800)
+        splitter = QSplitter(Qt.Orientation.Horizontal)
+        splitter.setChildrenCollapsible(False)
+        for side in Side:
+            splitter.addWidget(self.viewports[side])
+            splitter.setStretchFactor(splitter.count() - 1, 1)
+        splitter.setSizes([1000, 1000])
+        self.setCentralWidget(splitter)
+        self._add_dock("landmarks", "Landmarks", self.table, Qt.DockWidgetArea.RightDockWidgetArea)
+        penalty = self._add_dock(
+            "penalty", "Warping penalty", self.panel, Qt.DockWidgetArea.BottomDockWidgetArea
+        )
+        # The table keeps the whole height of the right edge.
+        self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
+        self.resizeDocks(
+            [self.findChild(QDockWidget, "landmarks")], [400], Qt.Orientation.Horizontal
+        )
+        self.resizeDocks([penalty], [90], Qt.Orientation.Vertical)
+        self._make_menus()
+        self._make_toolbar()
+        self._make_status_bar()
+
+    def _add_dock(
+        self, key: str, title: str, widget: QWidget, area: Qt.DockWidgetArea
+    ) -> QDockWidget:
+        dock = QDockWidget(title, self)
+        dock.setObjectName(key)
+        dock.setWidget(widget)
+        self.addDockWidget(area, dock)
+        return dock
+
+    def _make_menus(self) -> None:
+        actions = self.actions_by_key
+
+        def fill(menu: QMenu, keys: str) -> None:
+            for key in keys.split():
+                if key == "-":
+                    menu.addSeparator()
+                else:
+                    menu.addAction(actions[key])
+
+        file = self.menuBar().addMenu("&File")
+        fill(file, "open_source open_destination - open_session")
+        self._recent_menu = file.addMenu("Open &Recent")
+        self._recent_menu.aboutToShow.connect(self._fill_recent)
+        fill(file, "open_sample - save save_as -")
+        fill(file.addMenu("&Import"), "import_source import_destination import_pairs")
+        fill(file.addMenu("E&xport Landmarks"), "export_source export_destination export_pairs")
+        fill(file, "export_mesh - quit")
+        fill(
+            self.menuBar().addMenu("&Edit"),
+            "undo redo - rename delete_side delete_landmark - select_none",
+        )
+        view = self.menuBar().addMenu("&View")
+        fill(view, "overlay fit -")
+        for dock in self.findChildren(QDockWidget):
+            view.addAction(dock.toggleViewAction())
+        fill(self.menuBar().addMenu("&Help"), "about_penalty about")
+
+    def _make_toolbar(self) -> None:
+        bar = QToolBar("Tools", self)
+        bar.setObjectName("tools")
+        bar.setMovable(False)
+        bar.setIconSize(QSize(20, 20))
+        for key in _TOOLBAR:
+            if key is None:
+                bar.addSeparator()
+            else:
+                bar.addAction(self.actions_by_key[key])
+        self.opacity = QSlider(Qt.Orientation.Horizontal)
+        self.opacity.setRange(5, 100)
+        self.opacity.setFixedWidth(110)
+        self.opacity.setAccessibleName("Opacity of the warped source")
+        self.opacity.setToolTip("Opacity of the warped source")
+        holder = QWidget()
+        row = QHBoxLayout(holder)
+        row.setContentsMargins(4, 0, 8, 0)
+        row.addWidget(self.opacity)
+        holder.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Preferred)
+        bar.addWidget(holder)
+        self.addToolBar(bar)
+
+    def _make_status_bar(self) -> None:
+        self.hint = QLabel()
+        self.statusBar().addWidget(self.hint, 1)
+        self.progress = QProgressBar()
+        self.progress.setRange(0, 100)
+        self.progress.setFixedWidth(220)
+        self.progress.hide()
+        self.cancel = QPushButton("Cancel")
+        self.cancel.setFlat(True)
+        self.cancel.hide()
+        self.statusBar().addPermanentWidget(self.progress)
+        self.statusBar().addPermanentWidget(self.cancel)
+
+    # Wiring
+
+    def _connect(self) -> None:
+        documents, editor, actions = self.documents, self.editor, self.actions_by_key
+        does = {
+            "open_session": documents.ask_and_open_session,
+            "open_source": lambda: documents.ask_and_open_mesh(Side.SOURCE),
+            "open_destination": lambda: documents.ask_and_open_mesh(Side.DESTINATION),
+            "open_sample": self.open_sample,
+            "save": documents.save,
+            "save_as": documents.save_as,
+            "import_source": lambda: documents.ask_and_import_landmarks(Side.SOURCE),
+            "import_destination": lambda: documents.ask_and_import_landmarks(Side.DESTINATION),
+            "import_pairs": lambda: documents.ask_and_import_landmarks(None),
+            "export_source": lambda: documents.export_landmarks(Side.SOURCE),
+            "export_destination": lambda: documents.export_landmarks(Side.DESTINATION),
+            "export_pairs": lambda: documents.export_landmarks(None),
+            "export_mesh": documents.ask_and_export_mesh,
+            "quit": self.close,
+            "undo": editor.undo,
+            "redo": editor.redo,
+            "rename": self._rename,
+            "delete_side": self.presenter.delete_side,
+            "delete_landmark": self.presenter.delete_landmarks,
+            "select_none": editor.select,
+            "fit": self._fit,
+            "about": lambda: self._dialogs.tell("About pinwarp", ABOUT),
+            "about_penalty": lambda: self._dialogs.tell("About the warping penalty", ABOUT_PENALTY),
+        }
+        for key, function in does.items():
+            # Qt's "checked" argument is of no use to any of them.
+            actions[key].triggered.connect(lambda _checked=False, call=function: call())
+        actions["overlay"].toggled.connect(lambda on: editor.look(overlay=on))
+        self.opacity.valueChanged.connect(lambda value: editor.look(opacity=value / 100))
+        for side, viewport in self.viewports.items():
+            viewport.files_dropped.connect(
+                lambda paths, side=side: documents.open_files(side, paths)
+            )
+        self.jobs.started.connect(self._on_job_started)
+        self.jobs.progressed.connect(self._on_job_progressed)
+        self.jobs.ended.connect(self._on_job_ended)
+        self.cancel.clicked.connect(self.jobs.cancel)
+        documents.said.connect(self._say)
+        editor.session_changed.connect(self._on_session)
+        editor.selection_changed.connect(self._on_session)
+        editor.view_changed.connect(self._on_view)
+        editor.saved.connect(self._on_session)
+        self._on_view()
+
+    def open_sample(self) -> None:
+        """Open the sample bones as a new session, asking about unsaved work first."""
+        if self.documents.may_lose_changes():
+            self.documents.open_session(sample_session(), as_new=True)
+
+    def _rename(self) -> None:
+        names = self.editor.selection.names
+        if names and (row := self.editor.session.index_of(names[0])) is not None:
+            self.table.setFocus()
+            self.table.edit(self.model.index(row, 0))
+
+    def _fit(self) -> None:
+        for viewport in self.viewports.values():
+            viewport.look_at_all()
+
+    def _say(self, text: str) -> None:
+        self.statusBar().showMessage(text, 6000)
+
+    def _fill_recent(self) -> None:
+        self._recent_menu.clear()
+        for path in self._recent.paths:
+            action = self._recent_menu.addAction(path.name.replace("&", "&&"))
+            action.setToolTip(str(path))
+            action.triggered.connect(lambda _checked=False, path=path: self._open_recent(path))
+        if self._recent_menu.isEmpty():
+            self._recent_menu.addAction("Nothing yet").setEnabled(False)
+        else:
+            self._recent_menu.addSeparator()
+            self._recent_menu.addAction("Clear").triggered.connect(self._recent.clear)
+
+    def _open_recent(self, path: Path) -> None:
+        if self.documents.may_lose_changes():
+            self.documents.open_session(path)
+
+    # What changed
+
+    def _on_session(self, _changed: object = None) -> None:
+        editor, actions = self.editor, self.actions_by_key
+        self.setWindowTitle(f"{self.documents.name}[*] – pinwarp")
+        self.setWindowModified(editor.is_dirty)
+        for key, verb, label in (
+            ("undo", "&Undo", editor.undo_label),
+            ("redo", "&Redo", editor.redo_label),
+        ):
+            actions[key].setText(f"{verb} {label}" if label else verb)
+            actions[key].setEnabled(label is not None)
+            plain = verb.replace("&", "")
+            shortcut = actions[key].shortcut().toString()
+            actions[key].setToolTip(f"{plain} {label or ''}".strip() + f" ({shortcut})")
+        has_selection = bool(editor.selection.names)
+        for key in ("rename", "delete_side", "delete_landmark", "select_none"):
+            actions[key].setEnabled(has_selection)
+        session = editor.session
+        actions["export_mesh"].setEnabled(
+            session.mesh(Side.SOURCE) is not None and bool(session.pairs)
+        )
+        self._on_hint()
+
+    def _on_view(self, _changed: object = None) -> None:
+        view = self.editor.view
+        self.actions_by_key["overlay"].setChecked(view.overlay)
+        self.opacity.setEnabled(view.overlay)
+        self.opacity.setValue(round(view.opacity * 100))
+        self._on_hint()
+
+    def _on_hint(self) -> None:
+        """Say what a click would do right now."""
+        editor, session = self.editor, self.editor.session
+        if editor.view.hovered is not None:
+            landmark = session.landmark(editor.view.hovered)
+            state = f": {landmark.state.value}" if landmark is not None else ""
+            self.hint.setText(f"{editor.view.hovered}{state} – click selects, drag moves it")
+            return
+        missing = [side for side in Side if session.mesh(side) is None]
+        if missing:
+            self.hint.setText(f"Open the {missing[0].value} mesh to begin, or drop it on its view.")
+            return
+        targets = [
+            f"on the {side.value} places {edits.next_to_place(session, side) or 'a new landmark'}"
+            for side in Side
+        ]
+        self.hint.setText(f"A click {targets[0]}, {targets[1]}. Drag to orbit.")
+
+    # Slow jobs
+
+    def _on_job_started(self, title: str) -> None:
+        self.progress.setFormat(title)
+        self.progress.setValue(0)
+        self.progress.show()
+        self.cancel.show()
+
+    def _on_job_progressed(self, share: float, stage: str) -> None:
+        self.progress.setValue(round(100 * share))
+        self.progress.setFormat(f"{stage} – %p%")
+
+    def _on_job_ended(self) -> None:
+        self.progress.hide()
+        self.cancel.hide()
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether everything asked for is done and shown."""
+        return self.jobs.is_idle and self.presenter.is_settled
+
+    # The end
+
+    def _restore_layout(self) -> None:
+        for key, restore in (("geometry", self.restoreGeometry), ("layout", self.restoreState)):
+            stored = self._settings.value(key)
+            if isinstance(stored, QByteArray):
+                restore(stored)
+
+    def closeEvent(self, event: QCloseEvent) -> None:
+        """Ask about unsaved work, then let go of workers and graphics in the right order."""
+        if not self.documents.may_lose_changes():
+            event.ignore()
+            return
+        self._settings.setValue("geometry", self.saveGeometry())
+        self._settings.setValue("layout", self.saveState())
+        self.jobs.shut_down()
+        self.presenter.shut_down()
+        for signal in (self.editor.session_changed, self.editor.selection_changed):
+            signal.disconnect(self._on_session)
+        self.editor.view_changed.disconnect(self._on_view)
+        self.editor.saved.disconnect(self._on_session)
+        for viewport in self.viewports.values():
+            viewport.close()
+        super().closeEvent(event)

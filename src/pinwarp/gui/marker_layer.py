@@ -1,0 +1,126 @@
+"""The landmarks, labels and hints of a viewport, painted by Qt over the rendered bones.
+
+Painted flat rather than rendered: signs and text stay crisp and of one size at every zoom, and
+look the same on every graphics driver. What lies behind the surface is painted faintly.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from qtpy.QtCore import QPointF, QRectF, Qt
+from qtpy.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen
+from qtpy.QtWidgets import QWidget
+
+from pinwarp.gui import theme
+from pinwarp.gui.marker_painting import EXTENT, draw_label, marker_pixmap
+from pinwarp.gui.scene import Marker
+
+if TYPE_CHECKING:
+    from pinwarp.gui.viewport import Viewport
+
+
+class MarkerLayer(QWidget):
+    """A transparent sheet over one viewport; the mouse does not see it."""
+
+    def __init__(self, viewport: Viewport, title: str) -> None:
+        super().__init__(viewport)
+        self._viewport = viewport
+        self._title = title
+        self.caption = ""
+        self.hint = ""
+        self._markers: tuple[Marker, ...] = ()
+        self._hidden = np.zeros(0, dtype=bool)
+        self._hidden_for: object = None
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.setAttribute(Qt.WidgetAttribute.WA_NoSystemBackground)
+
+    @property
+    def markers(self) -> tuple[Marker, ...]:
+        """The landmarks on this sheet."""
+        return self._markers
+
+    def set_markers(self, markers: tuple[Marker, ...]) -> None:
+        """Show other landmarks."""
+        self._markers = markers
+        self._hidden_for = None
+        self.update()
+
+    def places(self) -> NDArray:
+        """Return where the landmarks are on the screen: (n, 2) logical pixels."""
+        if not self._markers:
+            return np.zeros((0, 2))
+        return self._viewport.project(np.array([marker.position for marker in self._markers]))
+
+    def hidden(self) -> NDArray[np.bool_]:
+        """Return which landmarks lie behind the surface as the camera stands now."""
+        key = self._viewport.view_key()
+        if key != self._hidden_for:
+            positions = np.array([marker.position for marker in self._markers]).reshape(-1, 3)
+            self._hidden = self._viewport.behind_surface(positions)
+            self._hidden_for = key
+        return self._hidden
+
+    def nearest(self, at: QPointF, within: float) -> Marker | None:
+        """Return the seen landmark nearest to a place on the screen, if any is near enough."""
+        if not self._markers:
+            return None
+        distances = np.hypot(*(self.places() - [at.x(), at.y()]).T)
+        distances[self.hidden()] = np.inf
+        index = int(np.argmin(distances))
+        return self._markers[index] if distances[index] <= within else None
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        """Paint title, landmarks, labels and the hint of an empty viewport."""
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        self._paint_title(painter)
+        if self.hint:
+            self._paint_hint(painter)
+        self._paint_markers(painter)
+        painter.end()
+
+    def _paint_title(self, painter: QPainter) -> None:
+        font = QFont(self.font())
+        font.setWeight(QFont.Weight.DemiBold)
+        painter.setFont(font)
+        painter.setPen(QColor(theme.INK))
+        margin = 12
+        line = painter.fontMetrics().height()
+        painter.drawText(QPointF(margin, margin + line * 0.8), self._title)
+        painter.setFont(self.font())
+        painter.setPen(QColor(theme.QUIET_INK))
+        caption = painter.fontMetrics().elidedText(
+            self.caption, Qt.TextElideMode.ElideMiddle, self.width() - 2 * margin
+        )
+        painter.drawText(QPointF(margin, margin + line * 1.9), caption)
+
+    def _paint_hint(self, painter: QPainter) -> None:
+        plate = QRectF(0, 0, min(340, self.width() - 24), 120)
+        plate.moveCenter(QPointF(self.width() / 2, self.height() / 2))
+        painter.setPen(QPen(QColor(theme.QUIET_INK), 1.5, Qt.PenStyle.DashLine))
+        painter.setBrush(QColor(255, 255, 255, 120))
+        painter.drawRoundedRect(plate, 10, 10)
+        painter.setPen(QColor(theme.INK))
+        painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, self.hint)
+
+    def _paint_markers(self, painter: QPainter) -> None:
+        places, hidden = self.places(), self.hidden()
+        ratio = self.devicePixelRatioF()
+        # Hidden ones first, selected ones last, so that what matters lies on top.
+        order = sorted(
+            range(len(self._markers)),
+            key=lambda i: (not hidden[i], self._markers[i].selected, self._markers[i].labelled),
+        )
+        for i in order:
+            marker = self._markers[i]
+            pixmap = marker_pixmap(marker.state, marker.selected, bool(hidden[i]), ratio)
+            x, y = places[i]
+            painter.drawPixmap(QPointF(x - EXTENT / 2, y - EXTENT / 2), pixmap)
+        for i in order:
+            if self._markers[i].labelled:
+                painter.setOpacity(0.5 if hidden[i] else 1.0)
+                draw_label(painter, self._markers[i].name, QPointF(*places[i]))
+        painter.setOpacity(1.0)

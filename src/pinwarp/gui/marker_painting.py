@@ -1,0 +1,87 @@
+"""How a landmark's state looks: the same sign in the viewports and in the table."""
+
+from __future__ import annotations
+
+import functools
+
+from qtpy.QtCore import QPointF, QRectF, Qt
+from qtpy.QtGui import QBrush, QColor, QIcon, QPainter, QPen, QPixmap, QPolygonF
+
+from pinwarp.core.landmarks import LandmarkState
+from pinwarp.gui import theme
+
+RADIUS = 6.0
+# Room for the halo around the largest sign.
+EXTENT = 26
+
+
+@functools.lru_cache(maxsize=256)
+def marker_pixmap(
+    state: LandmarkState, selected: bool, hidden: bool, ratio: float, radius: float = RADIUS
+) -> QPixmap:
+    """Return the picture of a landmark, EXTENT logical pixels wide.
+
+    Paired is a filled disc, half-placed a hollow ring, a passenger a diamond, a disabled one a
+    grey disc with a bar. Behind the surface all are faint.
+    """
+    pixmap = QPixmap(round(EXTENT * ratio), round(EXTENT * ratio))
+    pixmap.setDevicePixelRatio(ratio)
+    pixmap.fill(Qt.GlobalColor.transparent)
+    painter = QPainter(pixmap)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter.setOpacity(0.3 if hidden else 1.0)
+    centre = QPointF(EXTENT / 2, EXTENT / 2)
+    if selected:
+        painter.setPen(QPen(QColor(theme.OUTLINE), 1.0))
+        painter.setBrush(QColor(theme.SELECTED_COLOUR))
+        painter.drawEllipse(centre, radius + 5, radius + 5)
+    colour = QColor(theme.STATE_COLOURS[state])
+    outline = QPen(QColor(theme.OUTLINE), 1.2)
+    match state:
+        case LandmarkState.SOURCE_ONLY | LandmarkState.DESTINATION_ONLY | LandmarkState.EMPTY:
+            painter.setPen(QPen(QColor(theme.OUTLINE), 5.4))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawEllipse(centre, radius - 1, radius - 1)
+            painter.setPen(QPen(colour, 3.2))
+            painter.drawEllipse(centre, radius - 1, radius - 1)
+        case LandmarkState.PASSENGER:
+            painter.setPen(outline)
+            painter.setBrush(QBrush(colour))
+            r = radius + 1
+            painter.drawPolygon(
+                QPolygonF([centre + QPointF(*d) for d in ((0, -r), (r, 0), (0, r), (-r, 0))])
+            )
+        case _:
+            painter.setPen(outline)
+            painter.setBrush(QBrush(colour))
+            painter.drawEllipse(centre, radius, radius)
+            if state is LandmarkState.DISABLED:
+                painter.setPen(QPen(QColor(theme.PAPER), 2))
+                painter.drawLine(centre + QPointF(-3, 3), centre + QPointF(3, -3))
+    painter.end()
+    return pixmap
+
+
+@functools.lru_cache(maxsize=16)
+def state_icon(state: LandmarkState) -> QIcon:
+    """Return the sign of a state as an icon for lists."""
+    return QIcon(marker_pixmap(state, selected=False, hidden=False, ratio=2.0))
+
+
+def draw_label(painter: QPainter, text: str, at: QPointF) -> QRectF:
+    """Write a label beside a point, on a paper plate so that it reads on any bone."""
+    metrics = painter.fontMetrics()
+    plate = QRectF(
+        at.x() + 13,
+        at.y() - metrics.height() / 2 - 2,
+        metrics.horizontalAdvance(text) + 12,
+        metrics.height() + 4,
+    )
+    paper = QColor(theme.PAPER)
+    paper.setAlphaF(0.88)
+    painter.setPen(QPen(QColor(0, 0, 0, 40), 1))
+    painter.setBrush(paper)
+    painter.drawRoundedRect(plate, 4, 4)
+    painter.setPen(QColor(theme.INK))
+    painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, text)
+    return plate

@@ -1,0 +1,97 @@
+"""What a viewport shows, as a pure function of the session, the view state and the results."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pinwarp.core.landmarks import Landmark, LandmarkState, Position, Side, as_position
+from pinwarp.core.mesh import Mesh
+from pinwarp.session.editor import Selection, ViewState
+from pinwarp.session.results import WarpResult
+from pinwarp.session.session import Session
+
+
+@dataclass(frozen=True)
+class Marker:
+    """One landmark in one viewport."""
+
+    name: str
+    position: Position
+    state: LandmarkState
+    selected: bool = False
+    labelled: bool = False
+    movable: bool = True
+
+
+@dataclass(frozen=True)
+class Scene:
+    """All that one viewport shows besides its overlay's vertices."""
+
+    side: Side
+    mesh: Mesh | None
+    markers: tuple[Marker, ...]
+    overlay_visible: bool = False
+    overlay_opacity: float = 0.5
+    hint: str = ""
+
+
+_EMPTY_HINTS = {
+    Side.SOURCE: "Drop the source mesh here\nor open it with Ctrl+1",
+    Side.DESTINATION: "Drop the destination mesh here\nor open it with Ctrl+2",
+}
+
+
+def scene_of(
+    side: Side,
+    session: Session,
+    selection: Selection,
+    view: ViewState,
+    result: WarpResult | None,
+) -> Scene:
+    """Say what a viewport shows.
+
+    Passengers have no destination: on that side they stand where the warp carries them.
+    """
+    markers = [
+        _marker(landmark, position, selection, view)
+        for landmark in session.landmarks
+        if (position := landmark.position(side)) is not None
+    ]
+    if side is Side.DESTINATION and result is not None and result.passengers is not None:
+        passengers = [
+            landmark
+            for landmark in session.landmarks
+            if landmark.state is LandmarkState.PASSENGER and landmark.source is not None
+        ]
+        if len(passengers) == len(result.passengers):
+            markers += [
+                _marker(landmark, as_position(warped), selection, view, movable=False)
+                for landmark, warped in zip(passengers, result.passengers, strict=True)
+            ]
+    return Scene(
+        side=side,
+        mesh=session.mesh(side),
+        markers=tuple(markers),
+        overlay_visible=side is Side.DESTINATION and view.overlay,
+        overlay_opacity=view.opacity,
+        hint="" if session.mesh(side) is not None else _EMPTY_HINTS[side],
+    )
+
+
+def _marker(
+    landmark: Landmark,
+    position: Position,
+    selection: Selection,
+    view: ViewState,
+    *,
+    movable: bool = True,
+) -> Marker:
+    selected = landmark.name in selection.names
+    return Marker(
+        name=landmark.name,
+        position=position,
+        state=landmark.state,
+        selected=selected,
+        labelled=selected or landmark.name == view.hovered,
+        movable=movable,
+    )

@@ -1,0 +1,81 @@
+"""A mesh made ready for the screen: VTK data, shading normals, and a locator for picking."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyvista as pv
+from numpy.typing import NDArray
+from vtkmodules.vtkCommonCore import reference
+from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
+from vtkmodules.vtkFiltersCore import vtkTriangleMeshPointNormals
+
+from pinwarp.core.mesh import Mesh
+
+# Never 0: a ray through an exact edge would fall between two triangles.
+TOLERANCE = 1e-9
+
+
+class Surface:
+    """A mesh with all that drawing and picking need.
+
+    Built in the job that loads the mesh, since the locator of a million triangles takes 0.1 s.
+
+    Parameters
+    ----------
+    mesh
+        The mesh; its arrays are copied in single precision for drawing.
+    """
+
+    def __init__(self, mesh: Mesh) -> None:
+        self.mesh = mesh
+        self.polydata = triangles(mesh.vertices, mesh.faces)
+        self.polydata.point_data["Normals"] = shading_normals(self.polydata)
+        self.polydata.point_data.active_normals_name = "Normals"
+        self.diagonal = mesh.diagonal
+        self.inside_out = _signed_volume(mesh) < 0
+        self._locator = vtkStaticCellLocator()
+        self._locator.SetDataSet(self.polydata)
+        self._locator.BuildLocator()
+
+    def first_hit(self, start: NDArray, end: NDArray) -> NDArray | None:
+        """Return where a ray first meets the surface, None where it misses."""
+        where, local = [0.0] * 3, [0.0] * 3
+        t, sub, cell = reference(0.0), reference(0), reference(0)
+        hit = self._locator.IntersectWithLine(  # type: ignore[call-overload]  # stubs miss references
+            start, end, TOLERANCE, t, where, local, sub, cell
+        )
+        return np.array(where) if hit else None
+
+    def hides(self, eye: NDArray, point: NDArray) -> bool:
+        """Whether the surface lies between the eye and a point (points on it are seen)."""
+        towards = eye - point
+        distance = float(np.linalg.norm(towards))
+        clearance = 0.012 * self.diagonal
+        if distance <= clearance:
+            return False
+        return self.first_hit(eye, point + towards * (clearance / distance)) is not None
+
+
+def triangles(vertices: NDArray, faces: NDArray) -> pv.PolyData:
+    """Return VTK's picture of a triangle mesh, in single precision."""
+    cells = np.empty((len(faces), 4), dtype=np.int64)
+    cells[:, 0] = 3
+    cells[:, 1:] = faces
+    return pv.PolyData(np.asarray(vertices, dtype=np.float32), cells.ravel())
+
+
+def shading_normals(polydata: pv.PolyData) -> NDArray[np.float32]:
+    """Return point normals, the mean of the triangles around."""
+    # Ten times as fast as the usual filter, which also splits and reorients.
+    if not polydata.n_points:
+        return np.zeros((0, 3), np.float32)
+    algorithm = vtkTriangleMeshPointNormals()
+    algorithm.SetInputData(polydata)
+    algorithm.Update()
+    normals = pv.wrap(algorithm.GetOutput()).point_data["Normals"]
+    return np.array(normals, dtype=np.float32)
+
+
+def _signed_volume(mesh: Mesh) -> float:
+    a, b, c = (mesh.vertices[mesh.faces[:, i]] - mesh.vertices[0] for i in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)))

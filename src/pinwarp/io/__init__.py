@@ -1,0 +1,1 @@
+"""Bytes to core and back: meshes, sessions and the landmark files of other programs."""

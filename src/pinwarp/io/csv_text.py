@@ -1,0 +1,193 @@
+"""CSV as people and spreadsheets write it, for every format that is a table of text."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from pinwarp.core.errors import FileFormatError
+from pinwarp.io.reading import read_content
+
+LARGEST = 64 << 20
+LONGEST_CELL = 100_000
+"""Below what Python's reader takes, quotes included or not."""
+
+_NEEDS_QUOTES = re.compile(r'[,;"\t\r\n]|^[\s#]|\s$')
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row of a table.
+
+    Parameters
+    ----------
+    line
+        The line it begins at, counted from 1.
+    cells
+        Its cells; none where the row is blank or broken.
+    text
+        The row as it stands in the file.
+    problem
+        Why it cannot be split into cells, or nothing.
+    """
+
+    line: int
+    cells: tuple[str, ...]
+    text: str
+    problem: str = ""
+
+    @property
+    def is_blank(self) -> bool:
+        """Whether there is nothing in any cell."""
+        return not self.problem and not any(cell.strip() for cell in self.cells)
+
+
+def read_text(path: str | Path, what: str) -> str:
+    r"""Read a text file as UTF-8, UTF-16 with its mark, or else as Windows-1252.
+
+    Parameters
+    ----------
+    path
+        The file.
+    what
+        What it should be, for the messages.
+
+    Returns
+    -------
+    str
+        Its text, line ends as they are.
+
+    Raises
+    ------
+    FileFormatError
+        When it is missing, empty, larger than 64 MB or not readable.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "a.csv")
+    ...     _ = path.write_bytes(b"\xef\xbb\xbfname,x,y,z\r\n")
+    ...     read_text(path, "landmark")
+    'name,x,y,z\r\n'
+    """
+    data = read_content(path, what=what, largest=LARGEST).data
+    # Spreadsheets save "Unicode text" as UTF-16, and plain CSV in the old Windows encoding.
+    wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
+    for encoding in ("utf-16", "cp1252") if wide else ("utf-8-sig", "cp1252"):
+        try:
+            return data.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+    return data.decode("latin-1")
+
+
+def lines_of(text: str) -> list[str]:
+    r"""Split text at LF, CRLF and CR only, keeping the line ends.
+
+    Examples
+    --------
+    >>> lines_of("a\r\nb\u2028c")
+    ['a\r\n', 'b\u2028c']
+    """
+    return list(io.StringIO(text, newline=""))
+
+
+def separator_of(lines: Iterable[str]) -> str:
+    """Find what separates the cells: ``;`` or a tab if every line has two of them, else ``,``.
+
+    Parameters
+    ----------
+    lines
+        A few lines of the table; blank ones do not count.
+
+    Examples
+    --------
+    >>> separator_of(["a;1,5;2,5;3,5"]), separator_of(["name,x,y,z", "a;b;c,1,2,3"])
+    (';', ',')
+    """
+    filled = [line for line in lines if line.strip()]
+    for separator in ";\t":
+        if filled and all(_cells_in(line, separator) > 2 for line in filled):
+            return separator
+    return ","
+
+
+def _cells_in(line: str, separator: str) -> int:
+    # What is between quotes separates nothing.
+    return sum(part.count(separator) for part in line.split('"')[::2]) + 1
+
+
+def rows_of(lines: Sequence[str], separator: str, first_line: int = 1) -> Iterator[Row]:
+    r"""Split lines into rows of cells; a quoted cell may go on over several lines.
+
+    Parameters
+    ----------
+    lines
+        The lines with their ends.
+    separator
+        What is between two cells.
+    first_line
+        The number of the first line.
+
+    Yields
+    ------
+    Row
+        A row whose quotes do not end is yielded as a problem, and reading goes on below it.
+
+    Examples
+    --------
+    >>> [row.cells for row in rows_of(['a,"b, c"\n', "d\n"], ",")]
+    [('a', 'b, c'), ('d',)]
+    """
+    start = 0
+    while start < len(lines):
+        # Strict: a quote that is never closed would swallow every row below it in silence.
+        reader = csv.reader(lines[start:], delimiter=separator, strict=True)
+        done = 0
+        try:
+            for cells in reader:
+                text = "".join(lines[start + done : start + reader.line_num]).rstrip("\r\n")
+                yield Row(first_line + start + done, tuple(cells), text)
+                done = reader.line_num
+            return
+        except csv.Error as error:
+            broken = start + done
+            text = lines[broken].rstrip("\r\n")
+            yield Row(first_line + broken, (), text, f"the quotes do not match ({error})")
+            start = broken + 1
+
+
+def csv_line(cells: Iterable[str]) -> str:
+    r"""Return one line of comma-separated cells, quoted per RFC 4180 where they need it.
+
+    Examples
+    --------
+    >>> csv_line(["a", "b, c", "1.5"])
+    'a,"b, c",1.5\n'
+    """
+    quoted = [
+        '"' + cell.replace('"', '""') + '"' if _NEEDS_QUOTES.search(cell) else cell
+        for cell in cells
+    ]
+    return ",".join(quoted) + "\n"
+
+
+def refuse_binary(path: str | Path, text: str) -> None:
+    """Raise when what was read as text is not text.
+
+    Raises
+    ------
+    FileFormatError
+        When it holds a zero character, which no text does.
+
+    Examples
+    --------
+    >>> refuse_binary("a.csv", "name,x,y,z")
+    """
+    if "\0" in text:
+        raise FileFormatError(path, "This is not a text file. Choose a CSV file of landmarks.")

@@ -1,0 +1,1 @@
+"""Landmark files of other programs, one module per format."""

@@ -1,0 +1,1 @@
+"""Mesh files, one module per format; :mod:`pinwarp.io.meshes` is the way in."""

@@ -1,0 +1,146 @@
+"""Wavefront OBJ.
+
+Not VTK's reader: it splits vertices wherever faces disagree about a normal or a texture
+coordinate, so that a bone falls apart into triangles, and damaged files crash it.
+"""
+
+from __future__ import annotations
+
+import re
+from itertools import chain
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pinwarp.core.mesh import Mesh
+from pinwarp.io.mesh_formats.surface import BrokenMeshError, Report, Surface, counted
+
+_VERTEX = re.compile(rb"^[ \t]*v[ \t]+([^\r\n#]*)", re.MULTILINE)
+_FACE = re.compile(rb"^[ \t]*fo?[ \t]+([^\r\n#]*)", re.MULTILINE)
+_LOOSE = re.compile(rb"^[ \t]*[lp][ \t]", re.MULTILINE)
+_TEXTURE_AND_NORMAL = re.compile(rb"/[^\s]*")
+_CHUNK = 1 << 20
+_ROWS = 1 << 16
+
+
+def read_obj(data: bytes, report: Report) -> Surface:
+    r"""Read the vertices and faces of an OBJ file; materials, normals and groups are left out.
+
+    Parameters
+    ----------
+    data
+        The bytes of the file.
+    report
+        Told the share that is done.
+
+    Returns
+    -------
+    Surface
+        Every ``v`` line is one point, every ``f`` line one polygon.
+
+    Raises
+    ------
+    BrokenMeshError
+        When a line cannot be read, or the file is not OBJ.
+
+    Examples
+    --------
+    >>> text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//1 -1//1\n"
+    >>> read_obj(text, lambda share: None).corners.tolist()
+    [0, 1, 2]
+    """
+    if b"\0" in data[:4096]:
+        raise BrokenMeshError("This is not an OBJ file: it is not text. Export the mesh again.")
+    # A backslash continues a line; the blank in its place keeps the line numbers nearly right.
+    text = data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ")
+    points, corners, sizes = [], [], []
+    count = loose = start = 0
+    while start < len(text):
+        end = text.find(b"\n", start + _CHUNK)
+        chunk = text[start : end + 1 if end >= 0 else len(text)]
+        try:
+            points.append(_vertices(chunk))
+            chunk_corners, chunk_sizes = _faces(chunk, count)
+        except (ValueError, OverflowError) as error:
+            raise _complaint(chunk, text.count(b"\n", 0, start)) from error
+        corners.append(chunk_corners)
+        sizes.append(chunk_sizes)
+        count += len(points[-1])
+        loose += len(_LOOSE.findall(chunk))
+        start += len(chunk)
+        report(start / len(text))
+    notes = (f"{counted(loose, 'line or point', 'lines or points')} dropped.",) if loose else ()
+    return Surface(np.concatenate(points), np.concatenate(corners), np.concatenate(sizes), notes)
+
+
+def _vertices(chunk: bytes) -> NDArray[np.float64]:
+    rows = [row.split(None, 3)[:3] for row in _VERTEX.findall(chunk)]
+    return np.array(rows, dtype=np.float64).reshape(len(rows), 3)
+
+
+def _faces(chunk: bytes, vertices_before: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    found = _FACE.findall(chunk)
+    if not found:
+        return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
+    rows = [row.split() for row in _TEXTURE_AND_NORMAL.sub(b"", b"\n".join(found)).split(b"\n")]
+    sizes = np.array([len(row) for row in rows], dtype=np.int64)
+    numbers = np.array(list(chain.from_iterable(rows)), dtype=np.int64)
+    if sizes.min() < 3 or not numbers.all():
+        raise ValueError
+    if numbers.min() > 0:
+        return numbers - 1, sizes
+    # Negative numbers count back from the vertices that came before the face.
+    vertex_places = [match.start() for match in _VERTEX.finditer(chunk)]
+    face_places = [match.start() for match in _FACE.finditer(chunk)]
+    before = vertices_before + np.searchsorted(vertex_places, face_places)
+    return np.where(numbers > 0, numbers - 1, numbers + np.repeat(before, sizes)), sizes
+
+
+def _complaint(chunk: bytes, lines_before: int) -> BrokenMeshError:
+    """Find the line that could not be read."""
+    for number, line in enumerate(chunk.split(b"\n"), lines_before + 1):
+        try:
+            _vertices(line)
+        except ValueError:
+            return BrokenMeshError(
+                "A vertex needs three numbers. Repair this line or export the mesh again.", number
+            )
+        try:
+            _faces(line, 0)
+        except (ValueError, OverflowError):
+            return BrokenMeshError(
+                "A face needs three or more vertex numbers, counted from 1. "
+                "Repair this line or export the mesh again.",
+                number,
+            )
+    return BrokenMeshError("The vertices or faces cannot be read. Export the mesh again.")
+
+
+def write_obj(path: Path, mesh: Mesh) -> None:
+    """Write an OBJ file whose numbers read back exactly.
+
+    Parameters
+    ----------
+    path
+        The file.
+    mesh
+        The mesh.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_obj(Path(folder, "a.obj"), Mesh(np.eye(3) / 3, [[0, 1, 2]]))
+    ...     print(Path(folder, "a.obj").read_text().splitlines()[1])
+    v 0.3333333333333333 0.0 0.0
+    """
+    with path.open("w", encoding="ascii", newline="\n") as file:
+        file.write("# pinwarp\n")
+        # repr gives the fewest digits that read back exactly; 9 would lose half of a double.
+        for start in range(0, len(mesh.vertices), _ROWS):
+            vertices = mesh.vertices[start : start + _ROWS].tolist()
+            file.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in vertices)
+        for start in range(0, len(mesh.faces), _ROWS):
+            faces = (mesh.faces[start : start + _ROWS] + np.int64(1)).tolist()
+            file.writelines(f"f {a} {b} {c}\n" for a, b, c in faces)

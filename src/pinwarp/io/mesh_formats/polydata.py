@@ -1,0 +1,140 @@
+"""The little of VTK that files need: cutting polygons into triangles, and its own writers."""
+
+from __future__ import annotations
+
+import errno
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkTriangleFilter
+from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
+from pinwarp.core.mesh import Mesh
+
+
+def cut_polygons(
+    points: NDArray[np.float64], corners: NDArray[np.int64], sizes: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    """Cut polygons into triangles, also those that are not convex.
+
+    Parameters
+    ----------
+    points
+        (n, 3) positions.
+    corners
+        The vertex numbers of all polygons in a row; they must exist.
+    sizes
+        The number of corners of each polygon, at least three.
+
+    Returns
+    -------
+    ndarray
+        (t, 3) vertex numbers.
+
+    Examples
+    --------
+    >>> square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    >>> cut_polygons(square, np.arange(4), np.array([4])).shape
+    (2, 3)
+    """
+    cutter = vtkTriangleFilter()
+    cutter.SetInputData(_polydata(points, corners, np.concatenate([[0], np.cumsum(sizes)])))
+    cutter.Update()
+    cells = cutter.GetOutput().GetPolys()
+    triangles: NDArray[np.int64] = vtk_to_numpy(cells.GetConnectivityArray()).astype(np.int64)
+    return triangles.reshape(-1, 3)
+
+
+def write_vtp(path: Path, mesh: Mesh) -> None:
+    """Write a VTP file in double precision.
+
+    Parameters
+    ----------
+    path
+        The file.
+    mesh
+        The mesh.
+
+    Raises
+    ------
+    OSError
+        When it cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_vtp(Path(folder, "a.vtp"), Mesh(np.eye(3), [[0, 1, 2]]))
+    ...     b'type="PolyData"' in Path(folder, "a.vtp").read_bytes()
+    True
+    """
+    _write(vtkXMLPolyDataWriter(), path, mesh)
+
+
+def write_legacy_vtk(path: Path, mesh: Mesh) -> None:
+    """Write a binary legacy VTK file in double precision.
+
+    Parameters
+    ----------
+    path
+        The file.
+    mesh
+        The mesh.
+
+    Raises
+    ------
+    OSError
+        When it cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_legacy_vtk(Path(folder, "a.vtk"), Mesh(np.eye(3), [[0, 1, 2]]))
+    ...     Path(folder, "a.vtk").read_bytes()[:14]
+    b'# vtk DataFile'
+    """
+    writer = vtkPolyDataWriter()
+    writer.SetFileTypeToBinary()
+    writer.SetHeader("pinwarp")
+    _write(writer, path, mesh)
+
+
+def _write(writer: Any, path: Path, mesh: Mesh) -> None:
+    complaints: list[str] = []
+
+    def complain(_writer: object, _event: str, text: str) -> None:
+        complaints.append(text)
+
+    # With an observer VTK says it to us and not to the terminal.
+    complain.CallDataType = "string"  # type: ignore[attr-defined]
+    writer.AddObserver("ErrorEvent", complain)
+    sizes = np.arange(0, mesh.faces.size + 1, 3)
+    writer.SetInputData(_polydata(mesh.vertices, mesh.faces.ravel(), sizes))
+    writer.SetFileName(str(path))
+    if not writer.Write() or writer.GetErrorCode() or complaints:
+        reason = complaints[0].strip().splitlines()[-1] if complaints else "Is the disk full?"
+        raise OSError(errno.EIO, f"The mesh could not be written. {reason}", str(path))
+
+
+def _polydata(
+    points: NDArray[np.float64], corners: NDArray[Any], offsets: NDArray[np.int64]
+) -> vtkPolyData:
+    places = vtkPoints()
+    # Copies: VTK would otherwise keep pointers into arrays it does not own.
+    places.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
+    cells = vtkCellArray()
+    cells.SetData(
+        numpy_to_vtkIdTypeArray(np.ascontiguousarray(offsets, dtype=np.int64), deep=True),
+        numpy_to_vtkIdTypeArray(np.ascontiguousarray(corners, dtype=np.int64), deep=True),
+    )
+    surface = vtkPolyData()
+    surface.SetPoints(places)
+    surface.SetPolys(cells)
+    return surface

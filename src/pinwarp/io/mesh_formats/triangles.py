@@ -1,0 +1,78 @@
+"""From the polygons of a file to the triangles of a mesh."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pinwarp.core.mesh import Mesh
+from pinwarp.io.mesh_formats.polydata import cut_polygons
+from pinwarp.io.mesh_formats.surface import BrokenMeshError, Surface, counted
+
+
+def mesh_of(surface: Surface) -> tuple[Mesh, tuple[str, ...]]:
+    """Make a mesh of what a file holds.
+
+    Parameters
+    ----------
+    surface
+        Polygons over points.
+
+    Returns
+    -------
+    mesh
+        Its vertices are in the order of the file, less those that no triangle uses.
+    notes
+        What was changed or left out, as sentences.
+
+    Raises
+    ------
+    BrokenMeshError
+        When no triangle is left, a corner does not exist, or a vertex in use is not finite.
+
+    Examples
+    --------
+    >>> points = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [9, 9, 9]])
+    >>> mesh, notes = mesh_of(Surface(points, np.arange(4), np.array([4])))
+    >>> mesh.faces.shape, notes[1]
+    ((2, 3), '1 loose point dropped.')
+    """
+    points, corners, sizes = surface.points, surface.corners, surface.sizes
+    notes = list(surface.notes)
+    if len(corners) and (corners.min() < 0 or corners.max() >= len(points)):
+        wrong = int(np.flatnonzero((corners < 0) | (corners >= len(points)))[0])
+        face = int(np.searchsorted(np.cumsum(sizes), wrong, side="right"))
+        raise BrokenMeshError(
+            f"Face {face + 1:,} names vertex {int(corners[wrong]) + 1:,}, but there are only "
+            f"{len(points):,}: the file was cut off or is damaged. Export or copy it again."
+        )
+    if len(sizes) and sizes.min() < 3:
+        corners = corners[np.repeat(sizes >= 3, sizes)]
+        notes.append(f"{counted(int((sizes < 3).sum()), 'face')} of fewer than 3 corners dropped.")
+        sizes = sizes[sizes >= 3]
+    if len(sizes) and sizes.max() > 3:
+        many = counted(int((sizes > 3).sum()), "polygon")
+        notes.append(f"{many} of more than 3 corners cut into triangles.")
+        triangles = cut_polygons(points, corners, sizes)
+    else:
+        triangles = corners.reshape(-1, 3)
+    a, b, c = triangles.T
+    proper = (a != b) & (b != c) & (c != a)
+    if not proper.all():
+        dropped = counted(int((~proper).sum()), "triangle")
+        notes.append(f"{dropped} with two corners at one vertex dropped.")
+        triangles = triangles[proper]
+    if not len(triangles):
+        raise BrokenMeshError("The file holds no triangles. Export the bone as a triangle surface.")
+    used = np.zeros(len(points), dtype=bool)
+    used[triangles] = True
+    if not used.all():
+        notes.append(f"{counted(int((~used).sum()), 'loose point')} dropped.")
+        triangles = (np.cumsum(used) - 1)[triangles]
+    broken = np.flatnonzero(used & ~np.isfinite(points).all(axis=1))
+    if len(broken):
+        vertex = int(broken[0])
+        raise BrokenMeshError(
+            f"Vertex {vertex + 1:,} has a coordinate that is not a finite number. "
+            "Repair the mesh in the program it came from."
+        )
+    return Mesh(points[used], triangles), tuple(notes)

@@ -1,0 +1,147 @@
+"""The session file: one CSV that a person can read, compare and open in a spreadsheet."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from pinwarp.core.errors import LandmarkError, PenaltyError
+from pinwarp.core.landmarks import Landmark, duplicate_names
+from pinwarp.io.atomic import write_atomically
+from pinwarp.io.csv_cells import shortened
+from pinwarp.io.csv_text import LONGEST_CELL, lines_of, read_text
+from pinwarp.io.mesh_reference import MeshReference, mesh_text
+from pinwarp.io.session_header import VERSION, is_header, read_header, read_values
+from pinwarp.io.session_table import read_table, table_lines
+
+__all__ = ["MeshReference", "SessionRecord", "read_session", "write_session"]
+
+
+@dataclass(frozen=True)
+class SessionRecord:
+    """Everything a session file holds.
+
+    Parameters
+    ----------
+    landmarks
+        In the order of the table.
+    source_mesh, destination_mesh
+        The meshes, or None where none was chosen yet.
+    warping_penalty
+        Not negative; infinity stands for the affine fit.
+    penalty_convention
+        ``"regularising"`` or ``"opynsim"``.
+    unit
+        The unit of length, for display.
+    planar
+        Whether nearly planar landmarks are treated as planar.
+    unknown
+        Header lines this version does not know, as (key, text); a line without a key has
+        an empty one.
+    """
+
+    landmarks: tuple[Landmark, ...] = ()
+    source_mesh: MeshReference | None = None
+    destination_mesh: MeshReference | None = None
+    warping_penalty: float = 0.0
+    penalty_convention: str = "regularising"
+    unit: str = "mm"
+    planar: bool = False
+    unknown: tuple[tuple[str, str], ...] = ()
+
+
+def write_session(path: str | Path, record: SessionRecord) -> None:
+    """Write a session file; reading it gives back the same record exactly.
+
+    Parameters
+    ----------
+    path
+        The file, named ``NAME.pinwarp.csv`` by custom.
+    record
+        What to write. Mesh paths are written relative to the file's folder where possible.
+
+    Raises
+    ------
+    LandmarkError, PenaltyError
+        When two landmarks have one name, a name or note is longer than 100,000 characters,
+        or the penalty is negative or not a number: it could not be read back.
+    OSError
+        When the file cannot be written; an older one is untouched.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder, "femur.pinwarp.csv")
+    ...     write_session(path, SessionRecord((Landmark("fovea", source=(1, 2, 3)),)))
+    ...     print(path.read_text().splitlines()[-1])
+    fovea,pair,1,1.0,2.0,3.0,,,,
+    """
+    if repeated := duplicate_names(record.landmarks):
+        raise LandmarkError(f"Two landmarks are called {repeated[0]!r}. Rename one of them.")
+    for landmark in record.landmarks:
+        if len(landmark.note) > LONGEST_CELL or len(landmark.name) > LONGEST_CELL:
+            raise LandmarkError(
+                f"The name or note of {shortened(landmark.name)} is too long to be read back. "
+                f"Shorten it to {LONGEST_CELL:,} characters."
+            )
+    if not record.warping_penalty >= 0:
+        raise PenaltyError(f"The warping penalty is {record.warping_penalty}; it cannot be saved.")
+    folder = Path(os.path.abspath(path)).parent
+    header = [("pinwarp-session", str(VERSION))]
+    for key, mesh in (
+        ("source_mesh", record.source_mesh),
+        ("destination_mesh", record.destination_mesh),
+    ):
+        if mesh is not None:
+            header.append((key, mesh_text(mesh, folder)))
+    header += [
+        ("warping_penalty", repr(float(record.warping_penalty))),
+        ("penalty_convention", record.penalty_convention),
+        ("unit", record.unit),
+    ]
+    if record.planar:
+        header.append(("treat_as_planar", "yes"))
+    # Every header entry stays on its line, whatever it says.
+    lines = [" ".join(f"# {key}: {text}".splitlines()).rstrip() + "\n" for key, text in header]
+    lines += [f"# {key}: {text}\n" if key else f"# {text}\n" for key, text in record.unknown]
+    lines += table_lines(record.landmarks)
+    write_atomically(path, "".join(lines))
+
+
+def read_session(path: str | Path) -> SessionRecord:
+    """Read a session file, also one that a spreadsheet has saved again.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    SessionRecord
+        The whole of it; a session is never read in part.
+
+    Raises
+    ------
+    NewerFileError
+        When a newer pinwarp wrote it.
+    FileFormatError
+        When anything in it cannot be read; the message names the line.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder, "femur.pinwarp.csv")
+    ...     write_session(path, SessionRecord(warping_penalty=0.0042))
+    ...     read_session(path).warping_penalty
+    0.0042
+    """
+    lines = lines_of(read_text(path, "session"))
+    top = next((n for n, line in enumerate(lines) if not is_header(line)), len(lines))
+    separator = max(",;\t", key=lines[top].count) if top < len(lines) else ","
+    known, unknown = read_values(path, read_header(path, lines[:top], separator))
+    landmarks = read_table(path, lines[top:], top + 1, separator)
+    return SessionRecord(landmarks=landmarks, unknown=unknown, **known)

@@ -1,0 +1,191 @@
+"""The header of a session file: its ``# key: value`` lines."""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from pinwarp.core.errors import FileFormatError, NewerFileError
+from pinwarp.io.csv_cells import YES_NO, as_sentence, number_of, shortened
+from pinwarp.io.mesh_reference import MeshReference, mesh_reference
+
+VERSION = 1
+CORRECT = "Correct it in a text editor, or use an earlier copy of the file."
+
+_FIELDS = {
+    "source_mesh": "source_mesh",
+    "destination_mesh": "destination_mesh",
+    "warping_penalty": "warping_penalty",
+    "penalty_convention": "penalty_convention",
+    "unit": "unit",
+    "treat_as_planar": "planar",
+}
+"""The field of a session record that each known key fills."""
+_CONVENTIONS = ("regularising", "opynsim")
+
+
+class HeaderLine(NamedTuple):
+    """One header line: its number, key and text; a line without a colon has an empty key."""
+
+    line: int
+    key: str
+    text: str
+
+
+def is_header(line: str) -> bool:
+    """Whether a line belongs to the header.
+
+    Examples
+    --------
+    >>> is_header('"# unit: mm",,,'), is_header("name,role")
+    (True, False)
+    """
+    text = line.strip().lstrip('"')
+    # A spreadsheet fills blank lines with separators.
+    return text.startswith("#") or not text.strip(',;\t "')
+
+
+def read_header(path: str | Path, lines: Sequence[str], separator: str) -> list[HeaderLine]:
+    r"""Read the header lines and check the version.
+
+    Parameters
+    ----------
+    path
+        The file, for the messages.
+    lines
+        The lines above the table.
+    separator
+        What separates the cells of the table, in case a spreadsheet has saved the file.
+
+    Returns
+    -------
+    list of HeaderLine
+        All but the line of the version.
+
+    Raises
+    ------
+    FileFormatError
+        When this is not a session.
+    NewerFileError
+        When a newer pinwarp wrote it.
+
+    Examples
+    --------
+    >>> read_header("a.pinwarp.csv", ["# pinwarp-session: 1\n", "# unit: m\n"], ",")
+    [HeaderLine(line=2, key='unit', text='m')]
+    """
+    first = lines[0].rstrip("\r\n") if lines else ""
+    mangled = first.endswith(separator) or first.startswith('"')
+    found = []
+    for number, line in enumerate(lines, 1):
+        text = _header_text(line.rstrip("\r\n"), separator, mangled)
+        if text.startswith("#"):
+            key, colon, value = text.removeprefix("#").strip().partition(":")
+            if not colon:
+                key, value = "", key
+            found.append(HeaderLine(number, key.strip(), value.strip()))
+    if not found or found[0][:2] != (1, "pinwarp-session"):
+        raise FileFormatError(
+            path,
+            "This is not a pinwarp session: it should begin with '# pinwarp-session: 1'. "
+            "Landmarks of other programs can be imported instead.",
+        )
+    version = found[0].text
+    if not re.fullmatch(r"[0-9]{1,9}", version) or int(version) < 1:
+        raise FileFormatError(
+            path, f"The version {shortened(version)} is not a number from 1. {CORRECT}", 1
+        )
+    if int(version) > VERSION:
+        raise NewerFileError(
+            path,
+            f"This session was written by a newer pinwarp (version {int(version)}); "
+            f"update pinwarp to open it. This one knows version {VERSION}.",
+        )
+    return found[1:]
+
+
+def _header_text(line: str, separator: str, mangled: bool) -> str:
+    """Undo what a spreadsheet does to a header line: quotes, and separators at its end."""
+    if not mangled:
+        return line.strip()
+    # It took commas in the text for separators, and wrote its own in their place.
+    cells = next(csv.reader([line], delimiter=separator), [])
+    return ",".join(cells).rstrip(",").strip()
+
+
+def read_values(
+    path: str | Path, header: Sequence[HeaderLine]
+) -> tuple[dict[str, Any], tuple[tuple[str, str], ...]]:
+    """Read the header lines this version knows, and keep the others.
+
+    Parameters
+    ----------
+    path
+        The session file; mesh paths are seen from its folder.
+    header
+        Its header lines.
+
+    Returns
+    -------
+    known
+        Fields of a session record.
+    unknown
+        Key and text of the other lines, in order.
+
+    Raises
+    ------
+    FileFormatError
+        At the first line that cannot be read.
+
+    Examples
+    --------
+    >>> read_values("a.pinwarp.csv", [HeaderLine(2, "unit", "m"), HeaderLine(3, "by", "Ada")])
+    ({'unit': 'm'}, (('by', 'Ada'),))
+    """
+    folder = Path(os.path.abspath(path)).parent
+    known: dict[str, Any] = {}
+    unknown = []
+    for line, key, text in header:
+        if key not in _FIELDS:
+            unknown.append((key, text))
+            continue
+        try:
+            if _FIELDS[key] in known:
+                raise ValueError(f"{key} is given twice")
+            known[_FIELDS[key]] = _value(key, text, folder)
+        except ValueError as error:
+            raise FileFormatError(path, f"{as_sentence(str(error))} {CORRECT}", line) from None
+    return known, tuple(unknown)
+
+
+def _value(key: str, text: str, folder: Path) -> MeshReference | float | bool | str:
+    """Read the text of one line, or raise a ValueError with the reason."""
+    match key:
+        case "source_mesh" | "destination_mesh":
+            return mesh_reference(text, folder)
+        case "warping_penalty":
+            return _penalty(text)
+        case "treat_as_planar":
+            if text.lower() not in YES_NO:
+                raise ValueError(f"{key} is {shortened(text)} and neither yes nor no")
+            return YES_NO[text.lower()]
+        case "penalty_convention" if text not in _CONVENTIONS:
+            raise ValueError(
+                f"the convention {shortened(text)} is none of {', '.join(_CONVENTIONS)}"
+            )
+        case _:
+            return text
+
+
+def _penalty(text: str) -> float:
+    if text.lower() == "inf":
+        return math.inf
+    value = number_of(text, ",")
+    if value < 0:
+        raise ValueError(f"the warping penalty {text} is negative")
+    return value

@@ -1,0 +1,149 @@
+"""The table of a session file: one row per landmark."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from pinwarp.core.errors import FileFormatError
+from pinwarp.core.landmarks import Landmark, Role
+from pinwarp.io.csv_cells import (
+    YES_NO,
+    as_sentence,
+    coordinates_text,
+    formula_quoted,
+    formula_unquoted,
+    position_of,
+    shortened,
+)
+from pinwarp.io.csv_text import Row, csv_line, rows_of
+from pinwarp.io.session_header import CORRECT
+
+_SOURCE = ("source_x", "source_y", "source_z")
+_DESTINATION = ("destination_x", "destination_y", "destination_z")
+_COLUMNS = ("name", "role", "enabled", *_SOURCE, *_DESTINATION, "note")
+
+
+def table_lines(landmarks: Iterable[Landmark]) -> list[str]:
+    r"""Return the line of column names and a line per landmark.
+
+    Examples
+    --------
+    >>> table_lines([Landmark("fovea", source=(1, 2, 3))])[1]
+    'fovea,pair,1,1.0,2.0,3.0,,,,\n'
+    """
+    rows = list(landmarks)
+    # What an older or newer version wrote beside our columns goes back behind them.
+    extra = [c for landmark in rows for c, _ in landmark.extra if c not in _COLUMNS]
+    extra = list(dict.fromkeys(extra))
+    lines = [csv_line([*_COLUMNS, *map(formula_quoted, extra)])]
+    for landmark in rows:
+        others = dict(landmark.extra)
+        cells = [
+            formula_quoted(landmark.name),
+            landmark.role.value,
+            "1" if landmark.enabled else "0",
+            *coordinates_text(landmark.source),
+            *coordinates_text(landmark.destination),
+            formula_quoted(landmark.note),
+            *[formula_quoted(others.get(column, "")) for column in extra],
+        ]
+        lines.append(csv_line(cells))
+    return lines
+
+
+def read_table(
+    path: str | Path, lines: Sequence[str], first_line: int, separator: str
+) -> tuple[Landmark, ...]:
+    """Read the column names and the landmarks below them.
+
+    Parameters
+    ----------
+    path
+        The file, for the messages.
+    lines
+        The lines of the table with their ends.
+    first_line
+        The number of the first of them.
+    separator
+        What separates the cells.
+
+    Raises
+    ------
+    FileFormatError
+        At the first row that cannot be read.
+
+    Examples
+    --------
+    >>> lines = table_lines([Landmark("fovea", note="=1+1")])
+    >>> read_table("femur.pinwarp.csv", lines, 1, ",")[0].note
+    '=1+1'
+    """
+    rows = list(rows_of(lines, separator, first_line))
+    if not rows:
+        raise FileFormatError(
+            path, f"The table of landmarks is missing: the file was cut off. {CORRECT}"
+        )
+    columns = _read_columns(path, rows[0])
+    landmarks: dict[str, Landmark] = {}
+    for row in rows[1:]:
+        if row.is_blank:
+            continue
+        is_cut_off = row is rows[-1] and not lines[-1].endswith(("\n", "\r"))
+        try:
+            landmark = _landmark(row, columns, separator, is_cut_off)
+            if landmark.name in landmarks:
+                raise ValueError(f"The name {shortened(landmark.name)} was used before.")
+        except ValueError as error:
+            raise FileFormatError(path, f"{as_sentence(str(error))} {CORRECT}", row.line) from None
+        landmarks[landmark.name] = landmark
+    return tuple(landmarks.values())
+
+
+def _read_columns(path: str | Path, row: Row) -> tuple[str, ...]:
+    cells = [formula_unquoted(cell.strip()) for cell in row.cells]
+    columns = tuple(cell.lower() if cell.lower() in _COLUMNS else cell for cell in cells)
+    problem = row.problem
+    if missing := [column for column in _COLUMNS if column not in columns]:
+        problem = f"the column {missing[0]!r} is missing"
+    named = [column for column in columns if column]
+    if len(set(named)) < len(named):
+        problem = "two columns have the same name"
+    if problem:
+        raise FileFormatError(path, f"{as_sentence(problem)} {CORRECT}", row.line)
+    return columns
+
+
+def _landmark(row: Row, columns: Sequence[str], separator: str, is_cut_off: bool) -> Landmark:
+    """Make a landmark of one row, or raise a ValueError with the reason."""
+    if row.problem:
+        raise ValueError(row.problem)
+    cells = row.cells
+    # Spreadsheets leave out empty cells at the end of a row, but they do end the row.
+    if len(cells) < (len(columns) if is_cut_off else 3):
+        raise ValueError(f"the row ends after {len(cells)} of {len(columns)} cells")
+    cells = (*cells, *[""] * (len(columns) - len(cells)))
+    if any(cell.strip() for cell in cells[len(columns) :]):
+        raise ValueError(f"the row has {len(cells)} cells for {len(columns)} columns")
+    values = dict(zip(columns, cells, strict=False))
+    if values.get("", "").strip():
+        raise ValueError("a cell is filled in a column without a name")
+    role = values["role"].strip().lower()
+    if role not in {known.value for known in Role}:
+        raise ValueError(f"the role {shortened(role)} is neither 'pair' nor 'passenger'")
+    enabled = YES_NO.get(values["enabled"].strip().lower())
+    if enabled is None:
+        raise ValueError(f"'enabled' is {shortened(values['enabled'])} and not 1 or 0")
+    return Landmark(
+        formula_unquoted(values["name"]),
+        source=position_of([values[column] for column in _SOURCE], separator),
+        destination=position_of([values[column] for column in _DESTINATION], separator),
+        role=Role(role),
+        enabled=enabled,
+        note=formula_unquoted(values["note"]),
+        extra=tuple(
+            (column, formula_unquoted(values[column]))
+            for column in columns
+            if column and column not in _COLUMNS
+        ),
+    )

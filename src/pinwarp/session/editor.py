@@ -1,0 +1,159 @@
+"""The editor: the one holder of the current session, its history and what is selected."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from psygnal import Signal
+
+from pinwarp.core.landmarks import Side
+from pinwarp.session.history import History
+from pinwarp.session.session import Session
+
+
+@dataclass(frozen=True)
+class Selection:
+    """Selected landmarks by name, and the side that Delete and the arrow keys act on."""
+
+    names: tuple[str, ...] = ()
+    side: Side = Side.SOURCE
+
+
+@dataclass(frozen=True)
+class ViewState:
+    """How the session is looked at: not undone, not part of what is saved."""
+
+    overlay: bool = True
+    opacity: float = 0.55
+    hovered: str | None = None
+
+
+class Editor:
+    """Holds the truth; views render it and ask for changes.
+
+    Signals are in the past tense: ``session_changed`` (also while previewing a drag),
+    ``selection_changed``, ``view_changed`` and ``saved`` (the file or the unsaved mark changed).
+
+    Examples
+    --------
+    >>> from pinwarp.session import edits
+    >>> editor = Editor()
+    >>> editor.commit(edits.set_unit(editor.session, "m"), "Change unit")
+    >>> editor.session.unit, editor.is_dirty
+    ('m', True)
+    >>> editor.undo()
+    >>> editor.session.unit
+    'mm'
+    """
+
+    session_changed = Signal(Session)
+    selection_changed = Signal(Selection)
+    view_changed = Signal(ViewState)
+    saved = Signal()
+
+    def __init__(self, session: Session | None = None) -> None:
+        self._history = History(session or Session())
+        self._preview: Session | None = None
+        self.selection = Selection()
+        self.view = ViewState()
+        self.path: Path | None = None
+
+    @property
+    def session(self) -> Session:
+        """What is shown: the preview of a drag under way, else the committed session."""
+        return self._preview if self._preview is not None else self._history.session
+
+    @property
+    def committed(self) -> Session:
+        """The session without a drag under way."""
+        return self._history.session
+
+    @property
+    def is_previewing(self) -> bool:
+        """Whether a drag is under way."""
+        return self._preview is not None
+
+    @property
+    def is_dirty(self) -> bool:
+        """Whether there is work that no file holds."""
+        return self._history.is_dirty
+
+    @property
+    def undo_label(self) -> str | None:
+        """What undo would take back."""
+        return self._history.undo_label
+
+    @property
+    def redo_label(self) -> str | None:
+        """What redo would do again."""
+        return self._history.redo_label
+
+    def preview(self, session: Session) -> None:
+        """Show a session while something is dragged, without a step in the history."""
+        self._preview = session
+        self.session_changed.emit(session)
+
+    def cancel_preview(self) -> None:
+        """Put back what was there before the drag."""
+        if self._preview is not None:
+            self._preview = None
+            self._announce()
+
+    def commit(self, session: Session, label: str, merge_key: str | None = None) -> None:
+        """Make a session the current one, as a step that can be undone."""
+        self._preview = None
+        self._history.commit(session, label, merge_key)
+        self._announce()
+
+    def undo(self) -> None:
+        """Take the last step back."""
+        self._preview = None
+        self._history.undo()
+        self._announce()
+
+    def redo(self) -> None:
+        """Do the next step again."""
+        self._preview = None
+        self._history.redo()
+        self._announce()
+
+    def replace_all(self, session: Session, path: Path | None, *, saved: bool = True) -> None:
+        """Start over with another session: nothing before it can be undone.
+
+        Parameters
+        ----------
+        saved
+            False for a session that no file holds as it is.
+        """
+        self._history = History(session)
+        self._history.mark_saved(saved=saved)
+        self._preview = None
+        self.path = path
+        self._announce()
+        self.saved.emit()
+
+    def mark_saved(self, path: Path) -> None:
+        """Remember where the session was saved."""
+        self.path = path
+        self._history.mark_saved()
+        self.saved.emit()
+
+    def select(self, *names: str, side: Side | None = None) -> None:
+        """Select landmarks; without a side the previous one stays."""
+        selection = Selection(names, side or self.selection.side)
+        if selection != self.selection:
+            self.selection = selection
+            self.selection_changed.emit(selection)
+
+    def look(self, **changes: object) -> None:
+        """Change how the session is looked at; keywords as in :class:`ViewState`."""
+        view = replace(self.view, **changes)  # type: ignore[arg-type]  # keywords of ViewState
+        if view != self.view:
+            self.view = view
+            self.view_changed.emit(view)
+
+    def _announce(self) -> None:
+        kept = tuple(n for n in self.selection.names if self.session.index_of(n) is not None)
+        self.select(*kept)
+        self.session_changed.emit(self.session)

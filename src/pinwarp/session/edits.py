@@ -1,0 +1,170 @@
+"""Every way to change a session: Session -> Session, one function per verb, nothing else."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+
+from pinwarp.core.errors import LandmarkError
+from pinwarp.core.landmarks import Landmark, Position, Role, Side
+from pinwarp.core.spline import PenaltyConvention, check_penalty
+from pinwarp.io.meshes import MeshFile
+from pinwarp.session.session import Session
+
+UNITS = ("mm", "cm", "m")
+# A mesh with a shorter diagonal is taken to be in metres.
+LARGEST_IN_METRES = 3.0
+_AUTOMATIC = re.compile(r"landmark_(\d+)")
+
+
+def next_name(session: Session) -> str:
+    """Return the name that the next new landmark gets.
+
+    Examples
+    --------
+    >>> next_name(Session(landmarks=(Landmark("landmark_4"), Landmark("fovea"))))
+    'landmark_5'
+    """
+    matches = (_AUTOMATIC.fullmatch(landmark.name) for landmark in session.landmarks)
+    return f"landmark_{max((int(m[1]) for m in matches if m), default=-1) + 1}"
+
+
+def next_to_place(session: Session, side: Side) -> str | None:
+    """Return the first landmark that a click on this side would fill, None for a new one."""
+    for landmark in session.landmarks:
+        if landmark.role is Role.PAIR and landmark.enabled and landmark.position(side) is None:
+            return landmark.name
+    return None
+
+
+def place(session: Session, side: Side, position: Position) -> tuple[Session, str]:
+    """Place a landmark: the first that lacks this side, else a new one.
+
+    Returns
+    -------
+    session, name
+        The changed session, and which landmark was placed.
+    """
+    name = next_to_place(session, side)
+    if name is not None:
+        return move(session, name, side, position), name
+    name = next_name(session)
+    landmark = Landmark(name).placed(side, position)
+    return replace(session, landmarks=(*session.landmarks, landmark)), name
+
+
+def move(session: Session, name: str, side: Side, position: Position) -> Session:
+    """Put one side of a landmark somewhere."""
+    return _changed(session, name, lambda landmark: landmark.placed(side, position))
+
+
+def remove_side(session: Session, name: str, side: Side) -> Session:
+    """Remove one position; a landmark that had no other goes too, unless somebody named it."""
+    landmark = _existing(session, name)
+    bare = landmark.placed(side, None)
+    nothing_left = bare.source is None and bare.destination is None
+    if nothing_left and _AUTOMATIC.fullmatch(name) and not landmark.note:
+        return remove(session, [name])
+    return _changed(session, name, lambda _: bare)
+
+
+def remove(session: Session, names: Iterable[str]) -> Session:
+    """Remove landmarks altogether."""
+    gone = set(names)
+    kept = tuple(landmark for landmark in session.landmarks if landmark.name not in gone)
+    return replace(session, landmarks=kept)
+
+
+def rename(session: Session, name: str, new_name: str) -> Session:
+    """Give a landmark another name.
+
+    Raises
+    ------
+    LandmarkError
+        When the new name is empty or taken.
+    """
+    new_name = new_name.strip()
+    if not new_name:
+        raise LandmarkError("A landmark needs a name.")
+    if new_name != name and session.index_of(new_name) is not None:
+        raise LandmarkError(f"There is already a landmark called {new_name}: choose another name.")
+    return _changed(session, name, lambda landmark: replace(landmark, name=new_name))
+
+
+def set_enabled(session: Session, name: str, enabled: bool) -> Session:
+    """Let a pair take part in the solve, or not."""
+    return _changed(session, name, lambda landmark: replace(landmark, enabled=enabled))
+
+
+def set_penalty(session: Session, penalty: float) -> Session:
+    """Set the warping penalty, in mesh units."""
+    return replace(session, warping_penalty=check_penalty(penalty))
+
+
+def set_convention(session: Session, convention: PenaltyConvention) -> Session:
+    """Choose the equation that the penalty enters."""
+    return replace(session, convention=convention)
+
+
+def set_planar(session: Session, planar: bool) -> Session:
+    """Treat nearly planar landmarks as planar, or not."""
+    return replace(session, planar=planar)
+
+
+def set_unit(session: Session, unit: str) -> Session:
+    """Name the unit of the meshes."""
+    return replace(session, unit=unit)
+
+
+def set_mesh(session: Session, side: Side, file: MeshFile) -> Session:
+    """Put a mesh on one side; the landmarks stay where they are.
+
+    The first mesh of a session says which unit is meant: bones measure centimetres to metres.
+    """
+    if session.source is None and session.destination is None:
+        session = set_unit(session, "m" if file.mesh.diagonal < LARGEST_IN_METRES else "mm")
+    return session.with_mesh(side, file)
+
+
+def import_side(session: Session, side: Side, landmarks: Iterable[Landmark]) -> Session:
+    """Bring in positions for one side: by name where the name is known, else as new landmarks."""
+    arriving = {landmark.name: landmark.position(side) for landmark in landmarks}
+    known = {landmark.name for landmark in session.landmarks}
+    merged = tuple(
+        landmark.placed(side, arriving[landmark.name]) if landmark.name in arriving else landmark
+        for landmark in session.landmarks
+    )
+    new = tuple(
+        Landmark(name).placed(side, position)
+        for name, position in arriving.items()
+        if name not in known
+    )
+    return replace(session, landmarks=merged + new)
+
+
+def import_pairs(session: Session, landmarks: Iterable[Landmark]) -> Session:
+    """Bring in pairs: known names get the positions that arrive, others become new landmarks."""
+    arriving = tuple(landmarks)
+    for side in Side:
+        placed = [landmark for landmark in arriving if landmark.position(side) is not None]
+        session = import_side(session, side, placed)
+    return session
+
+
+def _existing(session: Session, name: str) -> Landmark:
+    landmark = session.landmark(name)
+    if landmark is None:
+        raise LandmarkError(f"There is no landmark called {name}.")
+    return landmark
+
+
+def _changed(session: Session, name: str, change: Callable[[Landmark], Landmark]) -> Session:
+    _existing(session, name)
+    return replace(
+        session,
+        landmarks=tuple(
+            change(landmark) if landmark.name == name else landmark
+            for landmark in session.landmarks
+        ),
+    )

@@ -1,0 +1,114 @@
+"""The session: everything that is saved and undone, as one frozen value."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from pinwarp.core.landmarks import Landmark, Side, pairs_of
+from pinwarp.core.mesh import Mesh
+from pinwarp.core.spline import PenaltyConvention
+from pinwarp.io.meshes import MeshFile
+from pinwarp.io.session_file import MeshReference, SessionRecord
+
+
+@dataclass(frozen=True)
+class Session:
+    """What one works on.
+
+    Parameters
+    ----------
+    source, destination
+        A mesh that was read, a reference to one that could not be found (kept, so that saving
+        loses nothing), or None.
+    landmarks
+        In the order of the table; names are unique.
+    warping_penalty
+        A length in mesh units; infinity is the affine fit.
+    convention
+        The equation that the penalty enters.
+    planar
+        Whether nearly planar landmarks are treated as planar.
+    unit
+        The unit of the meshes, for display.
+    unknown
+        Header lines of the session file that this version does not know.
+    """
+
+    source: MeshFile | MeshReference | None = None
+    destination: MeshFile | MeshReference | None = None
+    landmarks: tuple[Landmark, ...] = ()
+    warping_penalty: float = 0.0
+    convention: PenaltyConvention = PenaltyConvention.REGULARISING
+    planar: bool = False
+    unit: str = "mm"
+    unknown: tuple[tuple[str, str], ...] = ()
+
+    def mesh_file(self, side: Side) -> MeshFile | MeshReference | None:
+        """Return the mesh of one side with its origin, or the reference to a missing one."""
+        return self.source if side is Side.SOURCE else self.destination
+
+    def mesh(self, side: Side) -> Mesh | None:
+        """Return the mesh of one side, if it is there."""
+        file = self.mesh_file(side)
+        return file.mesh if isinstance(file, MeshFile) else None
+
+    def with_mesh(self, side: Side, file: MeshFile | MeshReference | None) -> Session:
+        """Return the session with the mesh of one side replaced."""
+        return (
+            replace(self, source=file) if side is Side.SOURCE else replace(self, destination=file)
+        )
+
+    @property
+    def pairs(self) -> tuple[Landmark, ...]:
+        """The landmarks that take part in the solve, in order."""
+        return pairs_of(self.landmarks)
+
+    def index_of(self, name: str) -> int | None:
+        """Return the row of a landmark by its name, or None."""
+        for index, landmark in enumerate(self.landmarks):
+            if landmark.name == name:
+                return index
+        return None
+
+    def landmark(self, name: str) -> Landmark | None:
+        """Return a landmark by its name, or None."""
+        index = self.index_of(name)
+        return None if index is None else self.landmarks[index]
+
+
+def to_record(session: Session) -> SessionRecord:
+    """Return what a session file holds of a session."""
+    return SessionRecord(
+        landmarks=session.landmarks,
+        source_mesh=_reference(session.source),
+        destination_mesh=_reference(session.destination),
+        warping_penalty=session.warping_penalty,
+        penalty_convention=session.convention.value,
+        unit=session.unit,
+        planar=session.planar,
+        unknown=session.unknown,
+    )
+
+
+def from_record(
+    record: SessionRecord,
+    source: MeshFile | None,
+    destination: MeshFile | None,
+) -> Session:
+    """Return the session that a file describes, with the meshes that could be read."""
+    return Session(
+        source=source or record.source_mesh,
+        destination=destination or record.destination_mesh,
+        landmarks=record.landmarks,
+        warping_penalty=record.warping_penalty,
+        convention=PenaltyConvention(record.penalty_convention),
+        planar=record.planar,
+        unit=record.unit,
+        unknown=record.unknown,
+    )
+
+
+def _reference(file: MeshFile | MeshReference | None) -> MeshReference | None:
+    if isinstance(file, MeshFile):
+        return MeshReference(file.path, file.sha256, len(file.mesh.vertices))
+    return file

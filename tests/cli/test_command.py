@@ -1,0 +1,86 @@
+"""The command as a user types it, in a process of its own."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+import pinwarp
+
+
+def run(*arguments, display=True, **environment):
+    env = {**os.environ, **environment}
+    if not display:
+        for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"):
+            env.pop(name, None)
+    return subprocess.run(
+        [sys.executable, "-W", "error::SyntaxWarning", "-m", "pinwarp", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        env=env,
+        timeout=120,
+        check=False,
+    )
+
+
+def test_the_version_is_told():
+    assert run("--version").stdout == f"pinwarp {pinwarp.__version__}\n"
+
+
+def test_the_command_line_starts_without_qt():
+    code = (
+        "import sys; from pinwarp.__main__ import main; sys.argv = ['pinwarp', '--version']\n"
+        "try: main()\nexcept SystemExit: pass\n"
+        "assert not [m for m in sys.modules if m.startswith(('qtpy', 'PySide6', 'pyvistaqt'))]"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+@pytest.mark.parametrize("module", ["pinwarp", "pinwarp.tps3d"])
+def test_importing_the_library_loads_neither_qt_nor_vtk(module):
+    code = (
+        f"import sys, {module}\n"
+        "loaded = [m for m in sys.modules if m.startswith(('qtpy', 'PySide6', 'vtk', 'pyvista'))]\n"
+        "assert not loaded, loaded"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+def test_a_file_that_is_not_there_is_named():
+    outcome = run("nowhere.stl", "elsewhere.stl")
+    assert outcome.returncode == 2
+    assert "nowhere.stl does not exist" in outcome.stderr
+
+
+def test_three_meshes_are_too_many(tmp_path):
+    paths = [tmp_path / f"{i}.stl" for i in range(3)]
+    for path in paths:
+        path.write_text("")
+    outcome = run(*paths)
+    assert outcome.returncode == 2
+    assert "at most two meshes" in outcome.stderr
+
+
+def test_without_a_display_it_says_so():
+    outcome = run("--demo", display=False)
+    assert outcome.returncode == 2
+    assert "there is no display" in outcome.stderr
+
+
+def test_a_picture_of_the_sample_is_written(tmp_path):
+    path = tmp_path / "pictures" / "demo.png"
+    outcome = run("--demo", "--screenshot", path, XDG_CONFIG_HOME=str(tmp_path))
+    assert outcome.returncode == 0, outcome.stderr
+    assert path.read_bytes().startswith(b"\x89PNG")
+    assert path.stat().st_size > 50_000
+
+
+def test_a_picture_of_a_damaged_session_fails_with_its_reason(tmp_path):
+    path = tmp_path / "bad.pinwarp.csv"
+    path.write_text("nonsense\n")
+    outcome = run(path, "--screenshot", tmp_path / "x.png", XDG_CONFIG_HOME=str(tmp_path))
+    assert outcome.returncode == 1
+    assert "bad.pinwarp.csv" in outcome.stderr

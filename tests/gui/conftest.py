@@ -1,0 +1,225 @@
+"""A real window for every test, and a look at what it leaves behind."""
+
+from __future__ import annotations
+
+import gc
+import shutil
+from pathlib import Path
+
+import pytest
+from qtpy.QtCore import QEvent, QPoint, QPointF, QSettings, Qt
+from qtpy.QtTest import QTest
+from qtpy.QtWidgets import QApplication
+from vtkmodules.vtkCommonCore import vtkObjectBase
+
+from pinwarp.core.landmarks import Side
+from pinwarp.gui.app import make_application
+from pinwarp.gui.dialogs import Answer
+from pinwarp.gui.main_window import MainWindow
+from pinwarp.io.samples import assets_folder, sample_session
+
+
+@pytest.fixture(scope="session")
+def qapp_cls():
+    return QApplication
+
+
+@pytest.fixture(scope="session")
+def qapp():
+    return make_application()
+
+
+class ScriptedDialogs:
+    """Answers as the test told it to, and remembers what was said."""
+
+    def __init__(self) -> None:
+        self.opens: list[Path] = []
+        self.saves: list[Path] = []
+        self.unsaved = Answer.DISCARD
+        self.unsaved_questions = 0
+        self.missing: Path | None = None
+        self.errors: list[tuple[str, str]] = []
+        self.told: list[tuple[str, str, str]] = []
+
+    def ask_open(self, _title, _filters, _folder):
+        return self.opens.pop(0) if self.opens else None
+
+    def ask_save(self, _title, _filters, _proposal):
+        return self.saves.pop(0) if self.saves else None
+
+    def ask_unsaved(self, _name):
+        self.unsaved_questions += 1
+        return self.unsaved
+
+    def ask_missing_mesh(self, _side, _path):
+        return self.missing
+
+    def tell_error(self, title, text):
+        self.errors.append((title, text))
+
+    def tell(self, title, text, details=""):
+        self.told.append((title, text, details))
+
+
+class Driver:
+    """A user: clicks, drags and types into a real window."""
+
+    def __init__(self, window: MainWindow, dialogs: ScriptedDialogs, qtbot) -> None:
+        self.window = window
+        self.dialogs = dialogs
+        self.qtbot = qtbot
+
+    @property
+    def editor(self):
+        return self.window.editor
+
+    @property
+    def session(self):
+        return self.window.editor.session
+
+    def settle(self) -> None:
+        """Wait until what was asked for is done and painted."""
+        self.qtbot.waitUntil(lambda: self.window.is_settled, timeout=30_000)
+        for _ in range(3):
+            QApplication.processEvents()
+
+    def open_sample(self) -> None:
+        self.window.actions_by_key["open_sample"].trigger()
+        self.settle()
+
+    def open_sample_meshes(self) -> None:
+        """The two sample femurs without any landmarks."""
+        for side, name in (
+            (Side.SOURCE, "femur_generic.ply"),
+            (Side.DESTINATION, "femur_subject.ply"),
+        ):
+            self.window.documents.open_mesh(side, assets_folder() / name)
+        self.settle()
+
+    def place_of(self, side: Side, position) -> QPoint:
+        """Where a position is on the screen of a viewport."""
+        import numpy as np
+
+        ((x, y),) = self.window.viewports[side].project(np.array([position]))
+        return QPointF(x, y).toPoint()
+
+    def places_down_the_bone(self, side: Side, count: int):
+        """Positions on the surface where the bone is widest across, row by row down the view."""
+        viewport = self.window.viewports[side]
+        places = []
+        for i in range(count):
+            y = viewport.height() * (0.16 + 0.72 * i / (count - 1))
+            hits = [
+                x for x in range(0, viewport.width(), 4) if viewport.pick(QPointF(x, y)) is not None
+            ]
+            x = hits[len(hits) // 2] + (i % 2) * 4
+            places.append(viewport.pick(QPointF(x, y)).tolist())
+        return places
+
+    def click(self, side: Side, at: QPoint, modifier=Qt.KeyboardModifier.NoModifier) -> None:
+        viewport = self.window.viewports[side]
+        QTest.mouseMove(viewport, at)
+        QTest.mouseClick(viewport, Qt.MouseButton.LeftButton, modifier, at)
+        self.settle()
+
+    def click_position(self, side: Side, position) -> None:
+        self.click(side, self.place_of(side, position))
+
+    def drag(self, widget, start: QPoint, end: QPoint, steps: int = 6, button=None, release=True):
+        button = button or Qt.MouseButton.LeftButton
+        QTest.mousePress(widget, button, Qt.KeyboardModifier.NoModifier, start)
+        for i in range(1, steps + 1):
+            at = start + (end - start) * (i / steps)
+            event_at = QPointF(at)
+            self.move_with(widget, event_at, button)
+        if release:
+            QTest.mouseRelease(widget, button, Qt.KeyboardModifier.NoModifier, end)
+        self.settle()
+
+    @staticmethod
+    def move_with(widget, at: QPointF, button) -> None:
+        """Move the mouse with a button held (QTest.mouseMove forgets the buttons)."""
+        from qtpy.QtCore import QEvent
+        from qtpy.QtGui import QMouseEvent
+
+        event = QMouseEvent(
+            QEvent.Type.MouseMove,
+            at,
+            QPointF(widget.mapToGlobal(at.toPoint())),
+            Qt.MouseButton.NoButton,
+            button,
+            Qt.KeyboardModifier.NoModifier,
+        )
+        QApplication.sendEvent(widget, event)
+        QApplication.processEvents()
+
+    def press(self, key, modifier=Qt.KeyboardModifier.NoModifier, widget=None) -> None:
+        QTest.keyClick(widget or self.window, key, modifier)
+        self.settle()
+
+    def trigger(self, key: str) -> None:
+        self.window.actions_by_key[key].trigger()
+        self.settle()
+
+
+def rendering_objects() -> int:
+    """How many VTK render windows, renderers and interactors are alive."""
+    gc.collect()
+    kinds = ("vtkGenericOpenGLRenderWindow", "vtkGenericRenderWindowInteractor", "Renderer")
+    return sum(
+        type(thing).__name__ in kinds
+        for thing in gc.get_objects()
+        if isinstance(thing, vtkObjectBase)
+    )
+
+
+@pytest.fixture
+def dialogs():
+    return ScriptedDialogs()
+
+
+@pytest.fixture
+def nothing_leaks(qapp, request):
+    """Torn down after the window: by then its widgets and VTK objects must be gone."""
+    before, failures = rendering_objects(), request.session.testsfailed
+    yield
+    if request.session.testsfailed > failures:
+        return  # its traceback holds everything; the test has failed anyway
+    # pytest keeps the test's arguments a little longer than it needs them.
+    request.node.funcargs.clear()
+    qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)
+    qapp.processEvents()
+    assert [type(w).__name__ for w in qapp.topLevelWidgets() if isinstance(w, MainWindow)] == []
+    assert rendering_objects() <= before
+
+
+@pytest.fixture
+def window(nothing_leaks, qtbot, dialogs, tmp_path):
+    """An empty window."""
+    settings = QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat)
+    window = MainWindow(settings, dialogs)
+    window.resize(1280, 800)
+    window.show()
+    window.activateWindow()
+    assert QTest.qWaitForWindowActive(window)
+    yield window
+    dialogs.unsaved = Answer.DISCARD
+    window.close()
+    window.deleteLater()
+
+
+@pytest.fixture
+def user(window, dialogs, qtbot):
+    driver = Driver(window, dialogs, qtbot)
+    driver.settle()
+    return driver
+
+
+@pytest.fixture
+def sample_copy(tmp_path) -> Path:
+    """The sample session with its meshes, in a folder of its own."""
+    folder = tmp_path / "sample"
+    folder.mkdir()
+    for name in ("femur_generic.ply", "femur_subject.ply"):
+        shutil.copy(assets_folder() / name, folder / name)
+    return Path(shutil.copy(sample_session(), folder))

@@ -1,0 +1,378 @@
+"""The session by its verbs, and as a machine that can be driven anywhere and back."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
+
+from pinwarp.core.errors import LandmarkError, PinwarpError
+from pinwarp.core.landmarks import Landmark, LandmarkState, Role, Side
+from pinwarp.core.mesh import Mesh
+from pinwarp.core.spline import PenaltyConvention
+from pinwarp.io.meshes import MeshFile
+from pinwarp.io.session_file import read_session, write_session
+from pinwarp.session import edits
+from pinwarp.session.editor import Editor
+from pinwarp.session.results import WarpInputs, WarpSolver, warped_mesh
+from pinwarp.session.session import Session, from_record, to_record
+
+SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
+
+
+def pair(name, shift=0.0):
+    return Landmark(name, (shift, 0.0, 0.0), (shift, 1.0, 0.0))
+
+
+def file_of(scale):
+    mesh = Mesh(np.eye(3) * scale, [[0, 1, 2]])
+    return MeshFile(Path("/tmp/m.stl"), mesh, "0" * 64, ())
+
+
+# Placing
+
+
+def test_a_new_landmark_fills_the_first_that_lacks_this_side():
+    session = Session(landmarks=(pair("a"), Landmark("b", (1, 2, 3)), Landmark("c", (4, 5, 6))))
+    session, name = edits.place(session, DESTINATION, (7, 8, 9))
+    assert name == "b"
+    assert session.landmark("b").destination == (7, 8, 9)
+
+
+def test_disabled_landmarks_and_passengers_are_not_filled():
+    session = Session(
+        landmarks=(
+            Landmark("off", (1, 2, 3), enabled=False),
+            Landmark("carried", (1, 2, 3), role=Role.PASSENGER),
+        )
+    )
+    _, name = edits.place(session, DESTINATION, (7, 8, 9))
+    assert name == "landmark_0"
+
+
+def test_new_names_go_on_from_the_largest_number():
+    session = Session(landmarks=(pair("landmark_7"), pair("landmark_2")))
+    assert edits.next_name(session) == "landmark_8"
+
+
+# Removing
+
+
+def test_removing_the_last_side_removes_a_landmark_that_nobody_named():
+    session = Session(landmarks=(Landmark("landmark_0", (1, 2, 3)), Landmark("fovea", (1, 2, 3))))
+    assert edits.remove_side(session, "landmark_0", SOURCE).landmark("landmark_0") is None
+    kept = edits.remove_side(session, "fovea", SOURCE).landmark("fovea")
+    assert kept.state is LandmarkState.EMPTY
+
+
+# Renaming
+
+
+@pytest.mark.parametrize("name", ["", "   ", "b"])
+def test_an_empty_or_taken_name_is_refused(name):
+    session = Session(landmarks=(pair("a"), pair("b")))
+    with pytest.raises(LandmarkError):
+        edits.rename(session, "a", name)
+
+
+def test_a_landmark_that_is_not_there_is_said_so():
+    with pytest.raises(LandmarkError, match="no landmark called x"):
+        edits.move(Session(), "x", SOURCE, (0, 0, 0))
+
+
+# Importing
+
+
+def test_an_import_pairs_by_name_and_adds_what_is_new():
+    session = Session(landmarks=(Landmark("b", (1, 1, 1)), Landmark("a", (2, 2, 2))))
+    arriving = [Landmark("a", None, (3, 3, 3)), Landmark("c", None, (4, 4, 4))]
+    session = edits.import_side(session, DESTINATION, arriving)
+    assert [x.name for x in session.landmarks] == ["b", "a", "c"]
+    assert session.landmark("a").destination == (3, 3, 3)
+    assert session.landmark("c").state is LandmarkState.DESTINATION_ONLY
+
+
+def test_imported_pairs_keep_their_halves():
+    arriving = [pair("a"), Landmark("b", None, (4, 4, 4))]
+    session = edits.import_pairs(Session(), arriving)
+    assert session.landmark("a").is_pair
+    assert session.landmark("b").source is None
+
+
+# Units
+
+
+def test_the_first_mesh_says_whether_the_session_is_in_metres():
+    assert edits.set_mesh(Session(), SOURCE, file_of(0.4)).unit == "m"
+    assert edits.set_mesh(Session(), SOURCE, file_of(400.0)).unit == "mm"
+
+
+def test_a_second_mesh_does_not_change_the_unit():
+    session = edits.set_mesh(Session(), SOURCE, file_of(400.0))
+    assert edits.set_mesh(session, DESTINATION, file_of(0.4)).unit == "mm"
+
+
+# Undo
+
+
+def test_undo_restores_a_deleted_pair_in_its_place():
+    editor = Editor(Session(landmarks=(pair("a"), pair("b"), pair("c"))))
+    editor.commit(edits.remove(editor.session, ["b"]), "Delete b")
+    editor.undo()
+    assert [x.name for x in editor.session.landmarks] == ["a", "b", "c"]
+
+
+def test_a_preview_leaves_no_step_and_a_cancelled_one_no_trace():
+    editor = Editor()
+    before = editor.session
+    for penalty in (1.0, 2.0, 3.0):
+        editor.preview(edits.set_penalty(editor.committed, penalty))
+    assert editor.session.warping_penalty == 3.0
+    assert editor.undo_label is None
+    editor.cancel_preview()
+    assert editor.session == before
+
+
+def test_a_drag_of_many_previews_is_one_step():
+    editor = Editor()
+    for penalty in (1.0, 2.0, 3.0):
+        editor.preview(edits.set_penalty(editor.committed, penalty))
+    editor.commit(editor.session, "Change penalty")
+    editor.undo()
+    assert editor.session.warping_penalty == 0.0
+    assert editor.undo_label is None
+
+
+def test_an_edit_that_changes_nothing_leaves_no_step():
+    editor = Editor(Session(landmarks=(pair("a"),)))
+    editor.commit(edits.rename(editor.session, "a", "a"), "Rename a")
+    assert editor.undo_label is None
+    assert not editor.is_dirty
+
+
+def test_undoing_to_what_was_saved_is_no_longer_unsaved():
+    editor = Editor()
+    editor.commit(edits.set_penalty(editor.session, 1.0), "Change penalty")
+    assert editor.is_dirty
+    editor.undo()
+    assert not editor.is_dirty
+
+
+def test_commits_with_one_merge_key_become_one_step():
+    editor = Editor()
+    for penalty in (1.0, 2.0):
+        editor.commit(edits.set_penalty(editor.session, penalty), "Change penalty", "penalty")
+    editor.undo()
+    assert editor.session == Session()
+
+
+def test_a_landmark_that_is_gone_is_no_longer_selected():
+    editor = Editor(Session(landmarks=(pair("a"), pair("b"))))
+    editor.select("a", "b")
+    editor.commit(edits.remove(editor.session, ["a"]), "Delete a")
+    assert editor.selection.names == ("b",)
+
+
+def test_listeners_hear_only_of_what_changed():
+    editor = Editor(Session(landmarks=(pair("a"),)))
+    heard = []
+    editor.selection_changed.connect(heard.append)
+    editor.select("a")
+    editor.select("a")
+    editor.look(overlay=True)
+    assert len(heard) == 1
+
+
+# Results
+
+
+def five_pairs():
+    rng = np.random.default_rng(0)
+    return tuple(
+        Landmark(f"p{i}", tuple(rng.normal(size=3)), tuple(rng.normal(size=3))) for i in range(6)
+    )
+
+
+def test_nothing_is_computed_twice():
+    solver = WarpSolver()
+    session = Session(source=file_of(1.0), landmarks=five_pairs())
+    first = solver.solve(WarpInputs.of(session))
+    assert (solver.factorisations, solver.solves, solver.evaluations) == (1, 1, 1)
+    renamed = edits.rename(session, "p0", "apex")
+    assert solver.solve(WarpInputs.of(renamed)) is first
+    assert (solver.factorisations, solver.solves, solver.evaluations) == (1, 1, 1)
+    solver.solve(WarpInputs.of(edits.set_penalty(renamed, 0.5)))
+    assert (solver.factorisations, solver.solves, solver.evaluations) == (1, 2, 2)
+    solver.solve(WarpInputs.of(edits.move(renamed, "p1", DESTINATION, (0, 0, 0))))
+    assert solver.factorisations == 1
+    solver.solve(WarpInputs.of(edits.move(renamed, "p1", SOURCE, (0, 0, 0))))
+    assert solver.factorisations == 2
+
+
+def test_a_session_without_pairs_has_no_warp_and_says_what_to_do():
+    assert WarpSolver().solve(WarpInputs.of(Session())).spline is None
+    with pytest.raises(PinwarpError, match="open one first"):
+        warped_mesh(Session())
+    with pytest.raises(PinwarpError, match="no pair yet"):
+        warped_mesh(Session(source=file_of(1.0)))
+
+
+def test_an_opynsim_penalty_on_a_pole_becomes_a_message():
+    session = Session(source=file_of(1.0), landmarks=five_pairs())
+    solver = WarpSolver()
+    pole = float(solver.solve(WarpInputs.of(session)).factor.poles[0])
+    session = edits.set_convention(edits.set_penalty(session, pole), PenaltyConvention.OPYNSIM)
+    result = solver.solve(WarpInputs.of(session))
+    assert "pole" in result.problem
+    assert result.spline is None
+
+
+def test_passengers_are_warped_with_the_mesh():
+    rider = Landmark("rider", (0.5, 0.5, 0.5), role=Role.PASSENGER)
+    session = Session(landmarks=(*five_pairs(), rider))
+    result = WarpSolver().solve(WarpInputs.of(session))
+    assert np.allclose(result.passengers, result.spline.evaluate([[0.5, 0.5, 0.5]]))
+
+
+def test_the_exported_mesh_meets_the_landmarks():
+    session = Session(landmarks=five_pairs())
+    vertices = [landmark.source for landmark in session.landmarks]
+    mesh = Mesh(vertices, [[0, 1, 2], [3, 4, 5]])
+    session = session.with_mesh(SOURCE, MeshFile(Path("/tmp/m.stl"), mesh, "", ()))
+    expected = [landmark.destination for landmark in session.landmarks]
+    assert np.allclose(warped_mesh(session).vertices, expected)
+
+
+# Anywhere and back
+
+coordinates = st.tuples(*[st.floats(-1e3, 1e3, allow_nan=False) for _ in range(3)])
+sides = st.sampled_from(list(Side))
+names = st.text(min_size=1, max_size=8).filter(lambda text: text.strip() == text and text)
+
+
+class EditingMachine(RuleBasedStateMachine):
+    """Every verb in any order; undo leads back to the start, a file gives back the same."""
+
+    def __init__(self):
+        super().__init__()
+        self.editor = Editor()
+        self.start = self.editor.session
+        self.steps = [self.start]
+        self.folder = Path(tempfile.mkdtemp())
+
+    def commit(self, session, label):
+        self.editor.commit(session, label)
+        if session != self.steps[-1]:
+            self.steps.append(session)
+
+    def some(self, data):
+        return data.draw(st.sampled_from([x.name for x in self.editor.session.landmarks]))
+
+    has_landmarks = precondition(lambda self: self.editor.session.landmarks)
+
+    @rule(side=sides, position=coordinates)
+    def place(self, side, position):
+        session, _ = edits.place(self.editor.session, side, position)
+        self.commit(session, "place")
+
+    @has_landmarks
+    @rule(data=st.data(), side=sides, position=coordinates)
+    def move(self, data, side, position):
+        self.commit(edits.move(self.editor.session, self.some(data), side, position), "move")
+
+    @has_landmarks
+    @rule(data=st.data(), side=sides)
+    def remove_side(self, data, side):
+        self.commit(edits.remove_side(self.editor.session, self.some(data), side), "remove side")
+
+    @has_landmarks
+    @rule(data=st.data())
+    def remove(self, data):
+        self.commit(edits.remove(self.editor.session, [self.some(data)]), "remove")
+
+    @has_landmarks
+    @rule(data=st.data(), name=names)
+    def rename(self, data, name):
+        try:
+            self.commit(edits.rename(self.editor.session, self.some(data), name), "rename")
+        except LandmarkError:
+            assert self.editor.session.index_of(name) is not None
+
+    @has_landmarks
+    @rule(data=st.data(), enabled=st.booleans())
+    def enable(self, data, enabled):
+        self.commit(edits.set_enabled(self.editor.session, self.some(data), enabled), "enable")
+
+    @rule(penalty=st.one_of(st.floats(0, 1e6), st.just(math.inf)))
+    def penalise(self, penalty):
+        self.commit(edits.set_penalty(self.editor.session, penalty), "penalty")
+
+    @rule(convention=st.sampled_from(list(PenaltyConvention)), planar=st.booleans())
+    def choose(self, convention, planar):
+        session = edits.set_convention(self.editor.session, convention)
+        self.commit(edits.set_planar(session, planar), "choose")
+
+    @rule(side=sides, arriving=st.lists(st.tuples(names, coordinates), max_size=3))
+    def bring_in(self, side, arriving):
+        unique = dict(arriving)
+        landmarks = [Landmark(name).placed(side, place) for name, place in unique.items()]
+        self.commit(edits.import_side(self.editor.session, side, landmarks), "import")
+
+    @rule(penalty=st.floats(0, 1))
+    def preview_and_cancel(self, penalty):
+        before = self.editor.session
+        self.editor.preview(edits.set_penalty(self.editor.committed, penalty))
+        self.editor.cancel_preview()
+        assert self.editor.session == before
+
+    @rule()
+    def undo_and_redo(self):
+        before = self.editor.session
+        if self.editor.undo_label is not None:
+            self.editor.undo()
+            assert self.editor.session == self.steps[-2]
+            self.editor.redo()
+        assert self.editor.session == before
+
+    @rule()
+    def undo_for_good(self):
+        if self.editor.undo_label is not None:
+            self.editor.undo()
+            self.steps.pop()
+
+    @rule()
+    def save_and_load(self):
+        path = self.folder / "session.pinwarp.csv"
+        write_session(path, to_record(self.editor.session))
+        assert from_record(read_session(path), None, None) == self.editor.session
+
+    @invariant()
+    def the_current_session_is_the_last_step(self):
+        assert self.editor.session == self.steps[-1]
+
+    @invariant()
+    def names_are_unique(self):
+        found = [landmark.name for landmark in self.editor.session.landmarks]
+        assert len(found) == len(set(found))
+
+    def teardown(self):
+        end = self.editor.session
+        while self.editor.undo_label is not None:
+            self.editor.undo()
+        assert self.editor.session == self.start
+        while self.editor.redo_label is not None:
+            self.editor.redo()
+        # Steps undone for good may be redone too: what was last must be on the way.
+        assert end in self.steps
+        shutil.rmtree(self.folder)
+
+
+TestEditing = EditingMachine.TestCase
+TestEditing.settings = settings(max_examples=40, stateful_step_count=30, deadline=None)
