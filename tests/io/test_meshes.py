@@ -334,6 +334,11 @@ def test_a_file_that_was_cut_off_is_refused_with_its_name(
         ("noise.vtk", bytes(range(256)) * 9, "not a VTK file"),
         ("short.stl", b"\1" * 83, "too short"),
         ("huge.stl", b" " * 80 + b"\xff\xff\xff\xff" + bytes(50), "4,294,967,295 triangles"),
+        (
+            "signalling-nan.stl",
+            bytes(80) + b"\1\0\0\0" + bytes(12) + b"\1\0\x80\x7f" + bytes(34),
+            "Facet 1 .*not a finite number",
+        ),
         ("none.stl", b"solid bone\nendsolid bone\n", "no triangles"),
         ("bad.stl", b"solid\nfacet\nvertex 0 0 z\nendfacet\nendsolid\n", "line 3: .*three numbers"),
         (
@@ -496,6 +501,18 @@ def test_any_change_to_a_file_gives_a_mesh_or_a_pinwarp_error(
     except PinwarpError:
         return
     assert np.isfinite(mesh.vertices).all()
+
+
+def test_polygons_without_sense_are_cut_without_a_word_in_the_terminal(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    random = np.random.default_rng(1)
+    points = random.integers(0, 3, (30, 3))
+    faces = [random.integers(1, 31, random.integers(3, 12)) for _ in range(300)]
+    lines = [f"v {x} {y} {z}" for x, y, z in points]
+    lines += ["f " + " ".join(map(str, face)) for face in faces]
+    assert len(read_mesh(write(tmp_path, "a.obj", "\n".join(lines))).mesh.faces) > 300
+    assert capfd.readouterr() == ("", "")
 
 
 # Real bones

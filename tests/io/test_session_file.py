@@ -206,6 +206,15 @@ def test_names_and_notes_are_no_formulas_in_the_file(tmp_path: Path) -> None:
     assert read_session(tmp_path / "a.csv").landmarks == (landmark,)
 
 
+@pytest.mark.parametrize("line", ["# :source_mesh: a", "## a: b", "#", "# a", "# a:", "# a: b: c"])
+def test_header_lines_that_are_not_understood_stay_as_they_are(tmp_path: Path, line: str) -> None:
+    text = EXAMPLE.replace("# a remark", line)
+    record = read_session(save(tmp_path, text))
+    write_session(tmp_path / "b.csv", record)
+    assert read_session(tmp_path / "b.csv") == record
+    assert record.source_mesh == example(tmp_path).source_mesh
+
+
 # Spreadsheets and editors
 
 
@@ -329,7 +338,7 @@ def test_a_row_that_was_cut_off_before_its_last_cell_is_refused(tmp_path: Path) 
             read_session(save(tmp_path, text[:end]))
 
 
-@settings(max_examples=300)
+@settings(max_examples=500)
 @given(random=st.randoms(use_true_random=False))
 def test_any_change_to_a_session_gives_a_session_or_a_pinwarp_error(
     tmp_path_factory: pytest.TempPathFactory, random: Random

@@ -39,11 +39,11 @@ def marker_pixmap(
     outline = QPen(QColor(theme.OUTLINE), 1.2)
     match state:
         case LandmarkState.SOURCE_ONLY | LandmarkState.DESTINATION_ONLY | LandmarkState.EMPTY:
-            painter.setPen(QPen(QColor(theme.OUTLINE), 5.4))
+            painter.setPen(QPen(QColor(theme.OUTLINE), 5.0))
             painter.setBrush(Qt.BrushStyle.NoBrush)
-            painter.drawEllipse(centre, radius - 1, radius - 1)
-            painter.setPen(QPen(colour, 3.2))
-            painter.drawEllipse(centre, radius - 1, radius - 1)
+            painter.drawEllipse(centre, radius, radius)
+            painter.setPen(QPen(colour, 2.8))
+            painter.drawEllipse(centre, radius, radius)
         case LandmarkState.PASSENGER:
             painter.setPen(outline)
             painter.setBrush(QBrush(colour))

@@ -85,9 +85,11 @@ def read_header(path: str | Path, lines: Sequence[str], separator: str) -> list[
     for number, line in enumerate(lines, 1):
         text = _header_text(line.rstrip("\r\n"), separator, mangled)
         if text.startswith("#"):
-            key, colon, value = text.removeprefix("#").strip().partition(":")
-            if not colon:
-                key, value = "", key
+            entry = text.removeprefix("#").strip()
+            key, colon, value = entry.partition(":")
+            # Nothing before the colon, or no colon at all: a remark.
+            if not colon or not key.strip():
+                key, value = "", entry
             found.append(HeaderLine(number, key.strip(), value.strip()))
     if not found or found[0][:2] != (1, "pinwarp-session"):
         raise FileFormatError(
