@@ -36,7 +36,8 @@ class Scene:
 
 
 _EMPTY_HINTS = {
-    Side.SOURCE: "Drop the source mesh here\nor open it with Ctrl+1\n\nTo look around first: File > Open Sample Bones",
+    Side.SOURCE: "Drop the source mesh here\nor open it with Ctrl+1\n\n"
+    "To look around first: File > Open Sample Bones",
     Side.DESTINATION: "Drop the destination mesh here\nor open it with Ctrl+2",
 }
 

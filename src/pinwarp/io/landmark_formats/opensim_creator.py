@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
@@ -26,48 +25,13 @@ from pinwarp.io.csv_text import (
     rows_of,
     separator_of,
 )
+from pinwarp.io.landmark_formats.reading import LandmarkReading, SkippedLine
+
+__all__ = ["LandmarkReading", "SkippedLine", "read_landmarks", "write_pairs", "write_side"]
 
 _SIDE_HEADER = ("name", "x", "y", "z")
 _PAIRS_HEADER = ("name", "source.x", "source.y", "source.z", "dest.x", "dest.y", "dest.z")
 _LONGEST_TEXT = 120
-
-
-@dataclass(frozen=True)
-class SkippedLine:
-    """A line that could not be used.
-
-    Parameters
-    ----------
-    line
-        Its number, counted from 1.
-    text
-        What it says.
-    reason
-        Why it was skipped.
-    """
-
-    line: int
-    text: str
-    reason: str
-
-
-@dataclass(frozen=True)
-class LandmarkReading:
-    """What was found in a landmark file.
-
-    Parameters
-    ----------
-    landmarks
-        In the order of the file; a file of one side fills that side only.
-    is_pairs
-        Whether the file holds both sides.
-    skipped
-        The lines that could not be used; blank lines and comments are not among them.
-    """
-
-    landmarks: tuple[Landmark, ...]
-    is_pairs: bool
-    skipped: tuple[SkippedLine, ...]
 
 
 class _Columns(Enum):
