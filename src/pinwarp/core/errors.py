@@ -4,7 +4,7 @@
 
     PinwarpError
     ├── LandmarkError (ValueError)      coordinates, names or counts that cannot be used
-    ├── PenaltyError (ValueError)       a penalty that is negative or not finite
+    ├── PenaltyError (ValueError)       a penalty that is negative or NaN
     ├── SingularSystemError             the equations have no usable solution
     ├── MeshError (ValueError)          not a surface, or not a usable one
     └── FileFormatError (ValueError)    a file that cannot be read; names file and line
@@ -30,7 +30,7 @@ class LandmarkError(PinwarpError, ValueError):
 
 
 class PenaltyError(PinwarpError, ValueError):
-    """A warping penalty that is negative or not finite."""
+    """A warping penalty that is negative or not a number."""
 
 
 class SingularSystemError(PinwarpError):
