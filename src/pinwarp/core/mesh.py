@@ -30,8 +30,8 @@ class Mesh:
     Examples
     --------
     >>> triangle = Mesh([[0, 0, 0], [1, 0, 0], [0, 2, 0]], [[0, 1, 2]])
-    >>> triangle.diagonal ** 2
-    5.0
+    >>> round(triangle.diagonal, 6)
+    2.236068
     """
 
     vertices: NDArray[np.float64]
