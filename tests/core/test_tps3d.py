@@ -6,7 +6,7 @@ import warnings
 import numpy as np
 import pytest
 import tps
-from hypothesis import assume, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from scipy.interpolate import RBFInterpolator
 from tests.core.strategies import landmark_pairs, rotations
@@ -302,7 +302,14 @@ def test_points_that_are_not_finite_do_not_get_in_or_out():
         warp.warp_point([0, 0])
 
 
-@given(st.integers(1, 12), st.integers(0, 10**6), st.integers(0, 2), st.floats(0, 10))
+@example(count=5, seed=234, spread=1, penalty=0.0)
+@example(count=2, seed=0, spread=0, penalty=2.2e-313)
+@given(
+    count=st.integers(1, 12),
+    seed=st.integers(0, 10**6),
+    spread=st.integers(0, 2),
+    penalty=st.floats(0, 10),
+)
 def test_whatever_the_integers_nothing_non_finite_gets_out(count, seed, spread, penalty):
     rng = np.random.default_rng(seed)
     source = rng.integers(-spread, spread + 1, (count, 3))

@@ -101,18 +101,23 @@ class SourceFactor:
         values, vectors = np.linalg.eigh(self.bending)
         return values * self.scale, vectors
 
-    @cached_property
-    def usable_modes(self) -> NDArray[np.bool_]:
-        """Modes that are not the numerical null space left by duplicate landmarks."""
-        values, _ = self.modes
-        if not len(values):
-            return np.zeros(0, dtype=bool)
-        return np.asarray(values > self.drop_tolerance * max(values[-1], 0.0))
+    @property
+    def has_modes(self) -> bool:
+        """Whether the eigendecomposition has been computed already."""
+        return "modes" in self.__dict__
 
     @property
-    def drop_tolerance(self) -> float:
-        """The share of the largest eigenvalue below which a mode is dropped."""
-        return float(8 * max(len(self.source), 1) * np.finfo(np.float64).eps)
+    def usable_modes(self) -> NDArray[np.bool_]:
+        """Modes that are not the numerical null space left by duplicate landmarks."""
+        return np.asarray(self.modes[0] > self.smallest_mode)
+
+    @property
+    def smallest_mode(self) -> float:
+        """What an eigenvalue must exceed to be told from rounding, in mesh units."""
+        values, _ = self.modes
+        # With duplicates alone left, the largest eigenvalue is rounding too: compare to the scale.
+        largest = max(float(values[-1]) if len(values) else 0.0, self.scale)
+        return float(8 * len(self.source) * np.finfo(np.float64).eps * largest)
 
     @property
     def poles(self) -> Matrix:

@@ -1,10 +1,16 @@
-"""Evaluate a thin-plate spline at many points: compiled where that pays, plain numpy elsewhere."""
+"""Evaluate thin-plate splines at many points: compiled where that pays, plain numpy elsewhere."""
 
 from __future__ import annotations
 
 import functools
+import logging
+import os
+import tempfile
 import threading
+from dataclasses import dataclass
+from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +19,7 @@ from scipy.spatial.distance import cdist
 from pinwarp.core.errors import LandmarkError
 
 Matrix = NDArray[np.float64]
+Single = NDArray[np.float32]
 
 # Below this many distances numpy is done before numba would have been loaded.
 WORTH_COMPILING = 300_000
@@ -27,20 +34,44 @@ _one_at_a_time = threading.Lock()
 @functools.cache
 def compiled() -> ModuleType | None:
     """Return the compiled loops, or None where numba cannot compile."""
+    if not _is_writable(Path(__file__).parent) and "NUMBA_CACHE_DIR" not in os.environ:
+        # A package folder for reading only (a system-wide install): numba caches elsewhere.
+        os.environ["NUMBA_CACHE_DIR"] = str(Path(tempfile.gettempdir()) / f"pinwarp-{_user()}")
     try:
         from pinwarp.core import compiled as loops
-    except Exception:  # numba fails in many ways: no LLVM for the platform, no cache folder, ...
+
+        points = np.zeros((2, 3))
+        loops.evaluate(points, points, np.zeros((4, 3)), points, np.empty_like(points))
+    except Exception as error:  # numba fails in many ways: no LLVM for the platform, no cache, ...
+        logging.getLogger(__name__).warning("warping without compiled code: %s", error)
         return None
     return loops
 
 
+def _is_writable(folder: Path) -> bool:
+    return os.access(folder, os.W_OK)
+
+
+def _user() -> int:
+    return os.getuid() if hasattr(os, "getuid") else 0
+
+
 def warm_up() -> None:
     """Load the compiled loops and run each once, so that the first real call does not wait."""
-    source = np.zeros((1, 3))
-    affine = np.zeros((4, 3))
-    points = np.zeros((2, 3))
-    _evaluate(source, source, affine, points, compile_always=True)
-    evaluate_preview(source, source, affine, points.astype(np.float32), compile_always=True)
+    loops = compiled()
+    if loops is None:
+        return
+    source, affine = np.zeros((1, 3), np.float32), np.zeros((4, 3))
+    points = np.zeros((2, 3), np.float32)
+    evaluate_preview(source, source, affine, points, loops=loops)
+    fields = evaluate_fields(source, np.zeros((1, 3)), affine, points, loops=loops)
+    combine_fields(fields, np.zeros(1), affine, points, loops=loops)
+    influence = evaluate_scalar(source, np.zeros(1), np.zeros(4), points, loops=loops)
+    add_influence(points, influence, np.zeros(3), np.empty_like(points), loops=loops)
+
+
+def _worth(count: int) -> ModuleType | None:
+    return compiled() if count >= WORTH_COMPILING else None
 
 
 def evaluate(source: Matrix, weights: Matrix, affine: Matrix, points: ArrayLike) -> Matrix:
@@ -79,33 +110,29 @@ def evaluate(source: Matrix, weights: Matrix, affine: Matrix, points: ArrayLike)
     if not usable.all():
         row = int(np.flatnonzero(~usable.all(axis=1))[0])
         raise LandmarkError(f"The point in row {row} is not usable: {points[row].tolist()}.")
-    return _evaluate(source, weights, affine, points)
-
-
-def _evaluate(
-    source: Matrix,
-    weights: Matrix,
-    affine: Matrix,
-    points: Matrix,
-    *,
-    compile_always: bool = False,
-) -> Matrix:
     centre = source.mean(axis=0) if len(source) else np.zeros(3)
-    about_centre = affine.copy()
-    about_centre[0] += centre @ affine[1:]
+    about_centre = about(affine, centre)
     local, moved = points - centre, source - centre
-    large = len(points) * len(source) >= WORTH_COMPILING
-    loops = compiled() if large or compile_always else None
-    if loops is not None:
-        out = np.empty_like(local)
-        with _one_at_a_time:
-            loops.evaluate_double(moved, np.ascontiguousarray(weights), about_centre, local, out)
-        return out
-    return evaluate_with_numpy(moved, weights, about_centre, local)
+    loops = _worth(len(points) * len(source))
+    if loops is None:
+        return _evaluate_with_numpy(moved, weights, about_centre, local)
+    with _one_at_a_time:
+        # The points are our own copy: the result may take their place.
+        loops.evaluate(moved, np.ascontiguousarray(weights), about_centre, local, local)
+    return local
 
 
-def evaluate_with_numpy(source: Matrix, weights: Matrix, affine: Matrix, points: Matrix) -> Matrix:
-    """Return ``f(points)`` without compiled code, in chunks of bounded memory."""
+def about(affine: Matrix, centre: Matrix) -> Matrix:
+    """Return an affine part as it reads in coordinates about another centre."""
+    moved = affine.copy()
+    moved[0] += centre @ affine[1:]
+    return moved
+
+
+def _evaluate_with_numpy(
+    source: NDArray[Any], weights: NDArray[Any], affine: NDArray[Any], points: NDArray[Any]
+) -> Matrix:
+    """Return ``affine . (1, v) + sum weights r`` for any number of columns, chunk by chunk."""
     out = affine[0] + points @ affine[1:]
     step = max(1, CHUNK // max(1, len(source)))
     for first in range(0, len(points) if len(source) else 0, step):
@@ -114,30 +141,140 @@ def evaluate_with_numpy(source: Matrix, weights: Matrix, affine: Matrix, points:
     return np.asarray(out)
 
 
-def evaluate_preview(
-    source: Matrix,
-    weights: Matrix,
-    affine: Matrix,
-    points: NDArray[np.float32],
-    out: NDArray[np.float32] | None = None,
-    *,
-    compile_always: bool = False,
-) -> NDArray[np.float32]:
-    """Return ``f(points)`` with single-precision distances, for the screen.
+# Previews. Points, source and affine part are about a common centre near the landmarks: far from
+# the origin single precision has no digits left.
 
-    Points, source and affine part must be given about a common centre near the landmarks: far
-    from the origin single precision has no digits left. The error is about 5e-6 of the bounding
-    box at 1000 landmarks.
+
+def evaluate_preview(
+    source: NDArray[Any],
+    weights: NDArray[Any],
+    affine: Matrix,
+    points: Single,
+    out: Single | None = None,
+    *,
+    loops: ModuleType | None = None,
+) -> Single:
+    """Return ``f(points)`` with single-precision distances and double-precision totals.
+
+    The error is about 5e-6 of the bounding box at 1000 landmarks.
     """
     if out is None:
         out = np.empty(points.shape, np.float32)
-    large = len(points) * len(source) >= WORTH_COMPILING
-    loops = compiled() if large or compile_always else None
+    loops = loops or _worth(len(points) * len(source))
     if loops is None:
-        out[:] = evaluate_with_numpy(source, weights, affine, points.astype(np.float64))
+        out[:] = _evaluate_with_numpy(source, weights, affine, points)
         return out
     with _one_at_a_time:
-        loops.evaluate_single(
-            source.astype(np.float32), weights.astype(np.float32), affine, points, out
-        )
+        loops.evaluate(_single(source), _single(weights), affine, points, out)
     return out
+
+
+@dataclass(frozen=True, eq=False)
+class Fields:
+    """Scalar fields over points in 16 bits, scaled block by block.
+
+    Attributes
+    ----------
+    values : (k, m) int16
+    scales : (blocks, k) float32
+    """
+
+    values: NDArray[np.int16]
+    scales: Single
+
+
+BLOCK = 512
+
+
+def evaluate_fields(
+    source: NDArray[Any],
+    weights: NDArray[Any],
+    affine: NDArray[Any],
+    points: Single,
+    *,
+    loops: ModuleType | None = None,
+) -> Fields:
+    """Return k scalar splines over the same landmarks: weights (n, k), affine (4, k)."""
+    count, wanted = len(points), weights.shape[1]
+    blocks = -(-count // BLOCK)
+    values = np.empty((wanted, count), np.int16)
+    scales = np.empty((blocks, wanted), np.float32)
+    loops = loops or _worth(count * len(source) * wanted // 3)
+    if loops is not None:
+        with _one_at_a_time:
+            loops.evaluate_fields(
+                _single(source), _single(weights), _single(affine), points, values, scales
+            )
+        return Fields(values, scales)
+    for block in range(blocks):
+        part = slice(block * BLOCK, (block + 1) * BLOCK)
+        exact = _evaluate_with_numpy(source, weights, affine, points[part])
+        scales[block] = np.maximum(np.abs(exact).max(axis=0), 1e-30) / 32767
+        values[:, part] = np.rint(exact / scales[block]).T
+    return Fields(values, scales)
+
+
+def combine_fields(
+    fields: Fields,
+    shares: Matrix,
+    affine: Matrix,
+    points: Single,
+    *,
+    loops: ModuleType | None = None,
+) -> Single:
+    """Return ``affine . (1, v) + sum_k shares[k] field_k``, fields in threes for x, y, z."""
+    out = np.empty(points.shape, np.float32)
+    loops = loops or _worth(fields.values.size)
+    if loops is not None:
+        with _one_at_a_time:
+            loops.combine_fields(
+                fields.values, fields.scales, _single(shares), _single(affine), points, out
+            )
+        return out
+    for block in range(len(fields.scales)):
+        part = slice(block * BLOCK, (block + 1) * BLOCK)
+        exact = fields.values[:, part] * fields.scales[block][:, None]
+        bent = np.einsum("k,kcm->mc", shares, exact.reshape(len(shares), 3, exact.shape[1]))
+        out[part] = affine[0] + points[part] @ affine[1:] + bent
+    return out
+
+
+def evaluate_scalar(
+    source: NDArray[Any],
+    weights: NDArray[Any],
+    affine: NDArray[Any],
+    points: Single,
+    *,
+    loops: ModuleType | None = None,
+) -> Single:
+    """Return one scalar spline (m,): weights (n,), affine (4,)."""
+    out = np.empty(len(points), np.float32)
+    loops = loops or _worth(len(points) * len(source))
+    if loops is not None:
+        with _one_at_a_time:
+            loops.evaluate_scalar(_single(source), _single(weights), _single(affine), points, out)
+        return out
+    out[:] = _evaluate_with_numpy(source, weights[:, None], affine[:, None], points)[:, 0]
+    return out
+
+
+def add_influence(
+    start: Single,
+    influence: Single,
+    shift: NDArray[Any],
+    out: Single,
+    *,
+    loops: ModuleType | None = None,
+) -> Single:
+    """Write ``start + influence (x) shift`` into out and return it."""
+    loops = loops or _worth(start.size)
+    if loops is not None:
+        with _one_at_a_time:
+            loops.add_influence(start, influence, _single(shift), out)
+        return out
+    np.add(start, influence[:, None] * _single(shift), out=out)
+    return out
+
+
+def _single(values: NDArray[Any]) -> Single:
+    return np.ascontiguousarray(values, dtype=np.float32)

@@ -137,14 +137,9 @@ def solve(
         linear = similarity.scale * similarity.rotation.T
         displacement = displacement - (factor.source - factor.centre) @ linear
 
-    columns = factor.rank + 1
-    rotated = factor.rotate(displacement / factor.scale)
-    gamma, findings = _bend(factor, rotated[columns:], penalty, convention)
-    affine = solve_upper(factor, rotated[:columns] - factor.coupling @ gamma)
-    weights = -factor.rotate_back(np.vstack([np.zeros((columns, 3)), gamma]))
-    linear = linear + factor.directions.T @ affine[1:]
-    offset = target + factor.scale * affine[0] - factor.centre @ linear
-    coefficients = np.vstack([offset, linear])
+    weights, affine, findings = solve_values(factor, displacement, penalty, convention)
+    linear = linear + affine[1:]
+    coefficients = np.vstack([target + affine[0] - factor.centre @ linear, linear])
     if not (np.isfinite(weights).all() and np.isfinite(coefficients).all()):
         raise SingularSystemError(
             "The landmarks' coordinates are too large or too far apart to solve with: "
@@ -160,6 +155,45 @@ def solve(
     )
 
 
+def solve_values(
+    factor: SourceFactor,
+    values: Matrix,
+    penalty: float,
+    convention: PenaltyConvention = PenaltyConvention.REGULARISING,
+) -> tuple[Matrix, Matrix, tuple[Finding, ...]]:
+    """Solve for any values at the source landmarks; linear in them.
+
+    Parameters
+    ----------
+    values
+        (n, k) values, one column per scalar spline.
+
+    Returns
+    -------
+    weights : (n, k)
+        For ``U = +r``.
+    affine : (4, k)
+        Constant, x, y and z, *about the centre of the source landmarks*.
+    findings
+        What the solve noticed.
+    """
+    columns = factor.rank + 1
+    rotated = factor.rotate(values / factor.scale)
+    gamma, findings = _bend(factor, rotated[columns:], penalty, convention)
+    weights, affine = back_to_landmarks(factor, gamma, rotated[:columns])
+    return weights, affine, findings
+
+
+def back_to_landmarks(
+    factor: SourceFactor, gamma: Matrix, top: Matrix | float = 0.0
+) -> tuple[Matrix, Matrix]:
+    """Return the weights and the affine part about the centre that belong to ``gamma``."""
+    columns = factor.rank + 1
+    affine = solve_upper(factor, top - factor.coupling @ gamma)
+    weights = -factor.rotate_back(np.vstack([np.zeros((columns, gamma.shape[1])), gamma]))
+    return weights, np.vstack([factor.scale * affine[:1], factor.directions.T @ affine[1:]])
+
+
 def _bend(
     factor: SourceFactor, values: Matrix, penalty: float, convention: PenaltyConvention
 ) -> tuple[Matrix, tuple[Finding, ...]]:
@@ -167,7 +201,7 @@ def _bend(
     if not len(values) or math.isinf(penalty):
         return np.zeros_like(values), ()
     regularising = convention is PenaltyConvention.REGULARISING or penalty == 0
-    if regularising and factor.well_spaced and "modes" not in factor.__dict__:
+    if regularising and factor.well_spaced and not factor.has_modes:
         # One solve alone: Cholesky is a tenth of the eigendecomposition's work.
         shifted = factor.bending + (penalty / factor.scale) * np.eye(len(values))
         # numpy's Cholesky frees the GIL where scipy's holds it; clustered landmarks may defeat it.
@@ -177,8 +211,7 @@ def _bend(
             return solve_triangular(lower, half, lower=True, trans=1, check_finite=False), ()
     eigenvalues, vectors = factor.modes
     shifts = eigenvalues + convention.sign * penalty
-    largest = max(float(eigenvalues[-1]), 0.0)
-    usable = np.abs(shifts) > factor.drop_tolerance * largest
+    usable = np.abs(shifts) > factor.smallest_mode
     findings: tuple[Finding, ...] = ()
     if not regularising:
         findings = _check_poles(factor, penalty)
@@ -192,7 +225,7 @@ def _check_poles(factor: SourceFactor, penalty: float) -> tuple[Finding, ...]:
     if not len(poles) or penalty <= 0.1 * poles[0]:
         return ()
     nearest = float(poles[np.argmin(np.abs(poles - penalty))])
-    if abs(nearest - penalty) <= factor.drop_tolerance * float(poles[-1]):
+    if abs(nearest - penalty) <= factor.smallest_mode:
         raise SingularSystemError(
             f"The warping penalty {penalty:.6g} lies on a pole of the OPYNSIM convention, where "
             "its equations have no solution: choose another penalty or the regularising convention."

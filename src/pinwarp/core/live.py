@@ -1,0 +1,187 @@
+"""The preview engine: each way the hand can move has its own shortcut to the warped vertices.
+
+Everything here is in single precision about the centre of the mesh, for the screen; what is
+exported is evaluated anew by :meth:`~pinwarp.core.spline.Spline.evaluate`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pinwarp.core import kernel
+from pinwarp.core.factor import SourceFactor
+from pinwarp.core.spline import (
+    Spline,
+    back_to_landmarks,
+    solve,
+    solve_values,
+)
+
+Matrix = NDArray[np.float64]
+Single = NDArray[np.float32]
+
+# Modes are left out of a sweep below this share of the bounding box of the landmarks.
+SWEEP_TOLERANCE = 5e-6
+SWEEP_SAMPLES = 120
+
+
+@dataclass(frozen=True, eq=False)
+class PreviewPoints:
+    """Vertices made ready for previews.
+
+    Attributes
+    ----------
+    centre : (3,) float64
+    local : (m, 3) float32
+        The vertices about the centre.
+    """
+
+    centre: Matrix
+    local: Single
+
+    @classmethod
+    def of(cls, vertices: ArrayLike) -> PreviewPoints:
+        """Centre the vertices and round them."""
+        array = np.asarray(vertices, dtype=np.float64)
+        centre = 0.5 * (array.min(axis=0) + array.max(axis=0))
+        local = np.empty(array.shape, np.float32)
+        np.subtract(array, centre, out=local, casting="same_kind")
+        return cls(centre, local)
+
+
+def preview(spline: Spline, points: PreviewPoints) -> Single:
+    """Return the warped points, evaluated directly."""
+    return kernel.evaluate_preview(
+        spline.source - points.centre,
+        spline.weights,
+        kernel.about(spline.affine, points.centre),
+        points.local,
+    )
+
+
+class PenaltySweep:
+    """The warped points at any penalty of the regularising convention, by a reduced basis.
+
+    The warp is ``affine fit + sum_i G_i(s) field_i`` with ``G_i = lambda_i / (lambda_i + s)``.
+    As functions of s the ``G_i`` are smooth and alike: an SVD over a grid of penalties leaves
+    about 15 combinations of the n - 4 fields, whatever n is.
+
+    Parameters
+    ----------
+    factor
+        The source landmarks.
+    destination
+        (n, 3) destination landmarks.
+    points
+        What is warped.
+
+    Examples
+    --------
+    >>> from pinwarp.core.factor import factorise
+    >>> rng = np.random.default_rng(0)
+    >>> factor, destination = factorise(rng.normal(size=(9, 3))), rng.normal(size=(9, 3))
+    >>> points = PreviewPoints.of(rng.normal(size=(100, 3)))
+    >>> sweep = PenaltySweep(factor, destination, points)
+    >>> exact = preview(solve(factor, destination, 0.3), points)
+    >>> bool(np.abs(sweep.at(0.3) - exact).max() < 1e-4)
+    True
+    """
+
+    def __init__(self, factor: SourceFactor, destination: ArrayLike, points: PreviewPoints) -> None:
+        self._points = points
+        affine_fit = solve(factor, destination, np.inf)
+        self._affine = kernel.about(affine_fit.affine, points.centre)
+        values, vectors = factor.modes
+        self._eigenvalues = values[factor.usable_modes]
+        vectors = vectors[:, factor.usable_modes]
+        target = np.asarray(destination, dtype=np.float64)
+        # The affine fit's residual has the same bending part as the destination itself.
+        residual = (target - affine_fit.evaluate(factor.source)) / factor.scale
+        parts = vectors.T @ factor.rotate(residual)[factor.rank + 1 :]
+        sizes = np.linalg.norm(parts, axis=1) * factor.scale
+        combinations = self._reduce(sizes, float(np.linalg.norm(np.ptp(target, axis=0))))
+        self._shares = combinations * sizes
+        # What combination k makes of each mode, at penalty 0.
+        per_size = np.divide(1.0, sizes, out=np.zeros_like(sizes), where=sizes > 0)
+        at_zero = parts * (factor.scale / self._eigenvalues)[:, None]
+        combined = np.einsum("km,mc->mkc", combinations * per_size, at_zero)
+        gamma = vectors @ combined.reshape(len(sizes), 3 * len(combinations))
+        weights, affine = back_to_landmarks(factor, gamma)
+        self._fields = kernel.evaluate_fields(
+            factor.source - points.centre,
+            weights,
+            kernel.about(affine, points.centre - factor.centre),
+            points.local,
+        )
+
+    def _reduce(self, sizes: Matrix, extent: float) -> Matrix:
+        """Return the combinations (r, modes) that the penalty can make, by SVD over a grid."""
+        values = self._eigenvalues
+        if not len(values):
+            return np.zeros((0, 0))
+        low, high = np.log10(values[0]) - 3, np.log10(values[-1]) + 3
+        grid = np.concatenate([[0.0], np.logspace(low, high, SWEEP_SAMPLES)])
+        shrinking = values / (values + grid[:, None])
+        _, strengths, combinations = np.linalg.svd(shrinking * sizes, full_matrices=False)
+        return np.asarray(combinations[strengths > SWEEP_TOLERANCE * extent])
+
+    @property
+    def rank(self) -> int:
+        """How many combinations are kept."""
+        return len(self._shares)
+
+    def at(self, penalty: float) -> Single:
+        """Return the warped points at a penalty (mesh units; infinity is the affine fit)."""
+        shares = self._shares @ (self._eigenvalues / (self._eigenvalues + penalty))
+        return kernel.combine_fields(self._fields, shares, self._affine, self._points.local)
+
+
+class Influence:
+    """The warped points while one destination landmark moves: they follow it linearly.
+
+    Parameters
+    ----------
+    factor
+        The source landmarks, which must span space (rank 3).
+    spline
+        The warp at the beginning.
+    row
+        Which pair moves.
+    position
+        Where its destination is at the beginning.
+    points
+        What is warped.
+    """
+
+    def __init__(
+        self,
+        factor: SourceFactor,
+        spline: Spline,
+        row: int,
+        position: ArrayLike,
+        points: PreviewPoints,
+    ) -> None:
+        unit = np.zeros((len(factor.source), 1))
+        unit[row] = 1.0
+        weights, affine, _ = solve_values(factor, unit, spline.penalty, spline.convention)
+        self._column = kernel.evaluate_scalar(
+            factor.source - points.centre,
+            weights[:, 0],
+            kernel.about(affine, points.centre - factor.centre)[:, 0],
+            points.local,
+        )
+        self._begin = np.asarray(position, dtype=np.float64)
+        self._start = preview(spline, points)
+
+    def at(self, position: ArrayLike) -> Single:
+        """Return the warped points with the destination landmark at another place."""
+        shift = np.asarray(position, dtype=np.float64) - self._begin
+        return kernel.add_influence(self._start, self._column, shift, np.empty_like(self._start))
+
+
+def can_follow(factor: SourceFactor) -> bool:
+    """Whether destinations act linearly on the warp: not where a similarity fills in."""
+    return factor.rank == 3
