@@ -7,12 +7,17 @@ SCREEN := xvfb-run -a -s "-screen 0 1920x1080x24"
 # One BLAS thread: on few cores its pool only fights with everything else.
 export OPENBLAS_NUM_THREADS = 1
 export QT_API = pyside6
+export PYTHON
 
-.PHONY: run test lint types layers check picture clean help
+# The system packages come before everything else, with -j too.
+.NOTPARALLEL:
+
+.PHONY: run test lint types layers check bench picture clean help
 
 help:
 	@echo "make run      open the window on the sample bones"
 	@echo "make test     lint, types, import rules and tests, under a virtual screen"
+	@echo "make bench    speed and memory against other libraries, under 5 minutes"
 	@echo "make picture  draw the README's picture anew"
 	@echo "make clean    remove the environment and what was built"
 
@@ -27,12 +32,12 @@ run:
 	  && echo "Wrote pinwarp-demo.png"; \
 	fi
 
-test: system-for-tests $(VENV)/dev
+test: system-with-screen $(VENV)/dev
 	$(MAKE) --no-print-directory check
 
-.PHONY: system-for-tests
-system-for-tests:
-	@PYTHON=$(PYTHON) .make/system-packages --screen
+.PHONY: system-with-screen
+system-with-screen:
+	@.make/system-packages --screen
 
 check: lint types layers
 	$(SCREEN) $(BIN)/python -m pytest
@@ -47,7 +52,11 @@ types:
 layers:
 	$(BIN)/lint-imports
 
-picture: $(VENV)/run
+# ARGS="--json figures.json" keeps the figures, ARGS="--only live" measures a part.
+bench: system-with-screen $(VENV)/dev
+	$(SCREEN) $(BIN)/python -m tests.benchmarks $(ARGS)
+
+picture: system-with-screen $(VENV)/run
 	$(SCREEN) $(BIN)/pinwarp --demo --screenshot assets/screenshot.png
 
 $(VENV)/pip:

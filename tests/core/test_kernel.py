@@ -1,5 +1,9 @@
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -61,3 +65,26 @@ def test_no_points_and_no_landmarks_are_fine():
     none = np.zeros((0, 3))
     assert kernel.evaluate(none, none, affine, [[0, 0, 0]]).tolist() == [[1, 2, 3]]
     assert kernel.evaluate(none, none, affine, none).shape == (0, 3)
+
+
+def test_without_a_compiler_it_says_so_and_goes_on(monkeypatch, caplog, spline):
+    kernel.compiled.cache_clear()
+    monkeypatch.setitem(sys.modules, "pinwarp.core.compiled", None)
+    monkeypatch.delattr("pinwarp.core.compiled", raising=False)
+    try:
+        assert np.abs(kernel.evaluate(*spline) - by_definition(*spline)).max() < 1e-8
+        assert "without compiled code" in caplog.text
+    finally:
+        kernel.compiled.cache_clear()
+
+
+def test_a_package_folder_for_reading_only_sends_the_cache_elsewhere():
+    code = (
+        "import os\n"
+        "from pinwarp.core import kernel\n"
+        "kernel._is_writable = lambda folder: False\n"
+        "assert kernel.compiled() is not None\n"
+        "assert os.environ['NUMBA_CACHE_DIR'].endswith(str(os.getuid()))\n"
+    )
+    environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
+    subprocess.run([sys.executable, "-c", code], check=True, env=environment, timeout=120)

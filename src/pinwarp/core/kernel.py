@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import logging
 import os
 import tempfile
 import threading
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
@@ -27,8 +29,21 @@ WORTH_COMPILING = 300_000
 CHUNK = 4_000_000
 LARGEST_COORDINATE = 1e150
 
+# Below this many sums (about a millisecond) a second thread costs more to wake than it saves.
+WORTH_THREADS = 4_000_000
+
 # Not every threading layer of numba survives two callers at once; each call uses all cores anyway.
 _one_at_a_time = threading.Lock()
+
+
+@contextlib.contextmanager
+def _threads_for(sums: int) -> Iterator[None]:
+    """Run compiled loops, one caller at a time, on as many threads as so many sums deserve."""
+    import numba
+
+    with _one_at_a_time:
+        numba.set_num_threads(numba.config.NUMBA_NUM_THREADS if sums >= WORTH_THREADS else 1)
+        yield
 
 
 @functools.cache
@@ -116,7 +131,7 @@ def evaluate(source: Matrix, weights: Matrix, affine: Matrix, points: ArrayLike)
     loops = _worth(len(points) * len(source))
     if loops is None:
         return _evaluate_with_numpy(moved, weights, about_centre, local)
-    with _one_at_a_time:
+    with _threads_for(len(points) * len(source)):
         # The points are our own copy: the result may take their place.
         loops.evaluate(moved, np.ascontiguousarray(weights), about_centre, local, local)
     return local
@@ -164,7 +179,7 @@ def evaluate_preview(
     if loops is None:
         out[:] = _evaluate_with_numpy(source, weights, affine, points)
         return out
-    with _one_at_a_time:
+    with _threads_for(len(points) * len(source)):
         loops.evaluate(_single(source), _single(weights), affine, points, out)
     return out
 
@@ -201,7 +216,7 @@ def evaluate_fields(
     scales = np.empty((blocks, wanted), np.float32)
     loops = loops or _worth(count * len(source) * wanted // 3)
     if loops is not None:
-        with _one_at_a_time:
+        with _threads_for(count * len(source)):
             loops.evaluate_fields(
                 _single(source), _single(weights), _single(affine), points, values, scales
             )
@@ -226,7 +241,7 @@ def combine_fields(
     out = np.empty(points.shape, np.float32)
     loops = loops or _worth(fields.values.size)
     if loops is not None:
-        with _one_at_a_time:
+        with _threads_for(fields.values.size // 4):
             loops.combine_fields(
                 fields.values, fields.scales, _single(shares), _single(affine), points, out
             )
@@ -251,7 +266,7 @@ def evaluate_scalar(
     out = np.empty(len(points), np.float32)
     loops = loops or _worth(len(points) * len(source))
     if loops is not None:
-        with _one_at_a_time:
+        with _threads_for(len(points) * len(source)):
             loops.evaluate_scalar(_single(source), _single(weights), _single(affine), points, out)
         return out
     out[:] = _evaluate_with_numpy(source, weights[:, None], affine[:, None], points)[:, 0]
@@ -269,7 +284,7 @@ def add_influence(
     """Write ``start + influence (x) shift`` into out and return it."""
     loops = loops or _worth(start.size)
     if loops is not None:
-        with _one_at_a_time:
+        with _threads_for(start.size):
             loops.add_influence(start, influence, _single(shift), out)
         return out
     np.add(start, influence[:, None] * _single(shift), out=out)

@@ -9,12 +9,14 @@ from pathlib import Path
 
 import platformdirs
 from qtpy.QtCore import QEventLoop, QSettings, Qt, QTimer
+from qtpy.QtGui import QSurfaceFormat
 from qtpy.QtWidgets import QApplication
 from threadpoolctl import threadpool_limits
 
 from pinwarp.core import kernel
 from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Opening
+from pinwarp.gui.fast_view import default_format
 from pinwarp.gui.main_window import MainWindow
 from pinwarp.io.samples import sample_session
 
@@ -51,6 +53,8 @@ def make_application() -> QApplication:
         return existing
     # Else a view moved into a floating dock loses its context and crashes.
     QApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
+    # The shared context must have the format that each view will ask for.
+    QSurfaceFormat.setDefaultFormat(default_format())
     application = QApplication(["pinwarp"])
     application.setApplicationName("pinwarp")
     application.setStyle("fusion")

@@ -6,10 +6,18 @@ a paint; however many come, one turn of the event loop renders once.
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 from pyvistaqt import QtInteractor
+from pyvistaqt.rwi import _default_format
+from qtpy.QtGui import QSurfaceFormat
 from qtpy.QtWidgets import QWidget
+
+
+def default_format() -> QSurfaceFormat:
+    """Return the OpenGL format that views need; to be set before the application is made."""
+    return _default_format()
 
 
 class FastView(QtInteractor):
@@ -26,6 +34,7 @@ class FastView(QtInteractor):
             (interactor, interactor.AddObserver("RenderEvent", self._on_render_request))
         )
         self.renders = 0
+        self.frame_seconds = 0.0
 
     def _on_render_request(self, _caller: object, _event: str) -> None:
         if not self._in_paint:
@@ -36,10 +45,12 @@ class FastView(QtInteractor):
         interactor = self._Iren
         interactor.EnableRenderOn()
         self.renders += 1
+        begin = time.perf_counter()
         try:
             super().paintGL()
         finally:
             interactor.EnableRenderOff()
+            self.frame_seconds = time.perf_counter() - begin
 
     def render(self, *_args: Any, **_kwargs: Any) -> None:
         """Schedule a paint; PyVista calls this all over the place."""

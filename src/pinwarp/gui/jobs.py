@@ -75,6 +75,11 @@ class LatestWins(QObject):
         else:
             self._start(request)
 
+    def request_if_idle(self, request: Any) -> None:
+        """Ask for something that can wait: dropped where anything else is under way."""
+        if not self._busy:
+            self._start(request)
+
     def _start(self, request: Any) -> None:
         self._busy = True
         self._pool.start(_Work(0, lambda: self._function(request), self._outcome))

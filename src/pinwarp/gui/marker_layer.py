@@ -19,15 +19,15 @@ from pinwarp.gui.marker_painting import EXTENT, draw_label, marker_pixmap
 from pinwarp.gui.scene import Marker
 
 if TYPE_CHECKING:
-    from pinwarp.gui.viewport import Viewport
+    from pinwarp.gui.canvas import Canvas
 
 
 class MarkerLayer(QWidget):
     """A transparent sheet over one viewport; the mouse does not see it."""
 
-    def __init__(self, viewport: Viewport, title: str) -> None:
-        super().__init__(viewport)
-        self._viewport = viewport
+    def __init__(self, canvas: Canvas, title: str) -> None:
+        super().__init__(canvas)
+        self._canvas = canvas
         self._title = title
         self.caption = ""
         self.hint = ""
@@ -52,14 +52,14 @@ class MarkerLayer(QWidget):
         """Return where the landmarks are on the screen: (n, 2) logical pixels."""
         if not self._markers:
             return np.zeros((0, 2))
-        return self._viewport.project(np.array([marker.position for marker in self._markers]))
+        return self._canvas.project(np.array([marker.position for marker in self._markers]))
 
     def hidden(self) -> NDArray[np.bool_]:
         """Return which landmarks lie behind the surface as the camera stands now."""
-        key = self._viewport.view_key()
+        key = self._canvas.view_key()
         if key != self._hidden_for:
             positions = np.array([marker.position for marker in self._markers]).reshape(-1, 3)
-            self._hidden = self._viewport.behind_surface(positions)
+            self._hidden = self._canvas.behind_surface(positions)
             self._hidden_for = key
         return self._hidden
 

@@ -212,22 +212,27 @@ class PenaltyPanel(QWidget):
 
     def show_result(self, result: WarpResult | None) -> None:
         """Show what the penalty does."""
+        if result is not None and result.factor is not None and not result.factor.has_modes:
+            # While a source landmark moves, the penalty's scale is not known: it will be at rest.
+            self._show_residual(result)
+            return
         self._result = result
         self._factor = result.factor if result is not None else None
         has_modes = self._factor is not None and len(self._factor.poles) > 0
         self.slider.setEnabled(has_modes)
         self.value.setEnabled(has_modes)
-        unit = self._session.unit
         flexibility = result.flexibility if result is not None else None
-        rms = result.rms_residual if result is not None else None
-        count = len(result.inputs.source) if result is not None else 0
         self._set_figure(self.flexibility, "–" if flexibility is None else f"{flexibility:.0%}")
-        self._set_figure(
-            self.residual, "–" if rms is None else format_length(_tidy(rms, result), unit)
-        )
-        self._set_figure(self.pairs, str(count))
+        self._show_residual(result)
         self._show_warnings(result, has_modes)
         self._place_handle()
+
+    def _show_residual(self, result: WarpResult | None) -> None:
+        rms = result.rms_residual if result is not None else None
+        count = len(result.inputs.source) if result is not None else 0
+        text = "–" if rms is None else format_length(_tidy(rms, result), self._session.unit)
+        self._set_figure(self.residual, text)
+        self._set_figure(self.pairs, str(count))
 
     def _set_figure(self, label: QLabel, text: str) -> None:
         title = label.property("title")

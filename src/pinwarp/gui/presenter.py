@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import weakref
 from dataclasses import dataclass
+from enum import Enum, auto
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import PenaltyConvention
+from pinwarp.gui.drawn_mesh import OverlayWarp
 from pinwarp.gui.jobs import LatestWins
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
 from pinwarp.gui.penalty_panel import PenaltyPanel
@@ -25,12 +27,28 @@ from pinwarp.session.results import WarpInputs, WarpResult, WarpSolver
 from pinwarp.session.session import Session
 
 
+class _Kind(Enum):
+    """What is asked of the worker."""
+
+    REST = auto()
+    PREVIEW = auto()
+    REFINE = auto()
+
+
+@dataclass(frozen=True, eq=False)
+class _Request:
+    inputs: WarpInputs
+    kind: _Kind
+    result: WarpResult | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class _Shaded:
-    """A result made ready for the screen in the worker."""
+    """A result made ready for the screen in the worker: in full, and as a stand-in."""
 
     result: WarpResult
-    normals: NDArray | None
+    kind: _Kind
+    warps: tuple[OverlayWarp | None, OverlayWarp | None] = (None, None)
 
 
 class Presenter:
@@ -62,9 +80,9 @@ class Presenter:
         self._surfaces: weakref.WeakKeyDictionary[Mesh, Surface] = weakref.WeakKeyDictionary()
         self.solver = WarpSolver()
         self._warps = LatestWins(self._warp)
-        self._asked: WarpInputs | None = None
+        self._asked: tuple[WarpInputs, bool] | None = None
         self.result: WarpResult | None = None
-        self._normals_of: tuple[NDArray | None, NDArray | None] = (None, None)
+        self._shown: weakref.WeakKeyDictionary[Mesh, OverlayWarp] = weakref.WeakKeyDictionary()
         self._connect()
         self._on_session(editor.session)
 
@@ -114,7 +132,11 @@ class Presenter:
     @property
     def is_settled(self) -> bool:
         """Whether what is shown follows from the session as it is."""
-        return self._warps.is_idle and self._asked == WarpInputs.of(self._editor.session)
+        if not self._warps.is_idle or self._asked is None:
+            return False
+        asked, previewed = self._asked
+        current = WarpInputs.of(self._editor.session, asked.stand_in)
+        return asked == current and previewed == self._editor.is_previewing
 
     def keep_surface(self, mesh: Mesh, surface: Surface) -> None:
         """Remember a surface made in a loading job for when its mesh is shown."""
@@ -137,10 +159,26 @@ class Presenter:
         self._model.show_session(session)
         self._panel.show_session(session)
         self._on_looks()
-        inputs = WarpInputs.of(session)
-        if inputs != self._asked:
-            self._asked = inputs
-            self._warps.request(inputs)
+        self._ask()
+
+    def _ask(self) -> None:
+        """Ask the worker for the warp of the session as it is, if it is another."""
+        editor, destination = self._editor, self._viewports[Side.DESTINATION]
+        if editor.is_previewing:
+            destination.set_warping(True)
+        inputs, previewing = self._inputs(), editor.is_previewing
+        if (inputs, previewing) == self._asked:
+            return
+        self._asked = (inputs, previewing)
+        self._warps.request(_Request(inputs, _Kind.PREVIEW if previewing else _Kind.REST))
+
+    def _inputs(self) -> WarpInputs:
+        """Return what the warp depends on, with a stand-in where drawing in full is slow."""
+        session = self._editor.session
+        surface = self._surface(session.mesh(Side.SOURCE))
+        slow = self._viewports[Side.DESTINATION].is_slow
+        stand_in = surface.stand_in if surface is not None and slow else None
+        return WarpInputs.of(session, stand_in)
 
     def _on_looks(self, _changed: Any = None) -> None:
         editor = self._editor
@@ -150,37 +188,58 @@ class Presenter:
                 scene_of(side, editor.session, editor.selection, editor.view, self.result)
             )
 
-    def _warp(self, inputs: WarpInputs) -> _Shaded:
+    def _warp(self, request: _Request) -> _Shaded:
         """Solve and shade; runs in the worker."""
-        result = self.solver.solve(inputs)
-        vertices, normals = self._normals_of
-        if result.vertices is not vertices:
-            normals = None
-            if result.vertices is not None and inputs.mesh is not None:
-                normals = shading_normals(triangles(result.vertices, inputs.mesh.faces))
-            self._normals_of = (result.vertices, normals)
-        return _Shaded(result, normals)
+        if request.kind is _Kind.REFINE and request.result is not None:
+            return _Shaded(self.solver.refine(request.result), request.kind)
+        inputs = request.inputs
+        solve = self.solver.preview if request.kind is _Kind.PREVIEW else self.solver.solve
+        result = solve(inputs)
+        return _Shaded(
+            result,
+            request.kind,
+            (
+                self._shade(result, inputs.mesh, result.vertices),
+                self._shade(result, inputs.stand_in, result.stand_in),
+            ),
+        )
+
+    def _shade(
+        self, result: WarpResult, mesh: Mesh | None, vertices: NDArray[np.float32] | None
+    ) -> OverlayWarp | None:
+        if mesh is None or vertices is None or result.spline is None:
+            return None
+        shown = self._shown.get(mesh)
+        if shown is not None and shown.vertices is vertices:
+            return shown
+        normals = shading_normals(triangles(vertices, mesh.faces))
+        # The warped surface shows its inside when it did so before, or when the warp mirrors it.
+        whole = self._surface(result.inputs.mesh)
+        mirrored = bool(np.linalg.det(result.spline.affine[1:]) < 0)
+        inside_out = (whole is not None and whole.inside_out) != mirrored
+        self._shown[mesh] = OverlayWarp(mesh, vertices, normals, inside_out)
+        return self._shown[mesh]
 
     def _on_warp(self, shaded: _Shaded) -> None:
-        previous, result = self.result, shaded.result
+        result, viewport = shaded.result, self._viewports[Side.DESTINATION]
+        if shaded.kind is _Kind.REFINE and (
+            self.result is None or result.inputs != self.result.inputs
+        ):
+            return
         self.result = result
-        if previous is None or result.vertices is not previous.vertices:
-            mesh = result.inputs.mesh
-            self._viewports[Side.DESTINATION].show_overlay(
-                mesh.faces if mesh is not None and result.vertices is not None else None,
-                result.vertices,
-                shaded.normals,
-                inside_out=mesh is not None and self._is_flipped(mesh, result),
-            )
+        if shaded.kind is not _Kind.REFINE:
+            if shaded.warps == (None, None):
+                viewport.hide_overlay()
+            else:
+                viewport.show_overlay(shaded.warps)
+        if shaded.kind is not _Kind.PREVIEW and not self._editor.is_previewing:
+            # Only now: the stand-in stays until the full mesh has caught up.
+            viewport.set_warping(False)
         self._model.show_result(result)
         self._panel.show_result(result)
         self._on_looks()
-
-    def _is_flipped(self, mesh: Mesh, result: WarpResult) -> bool:
-        """Whether the warped surface shows its inside: it was so, or the warp mirrors."""
-        surface = self._surface(mesh)
-        mirrored = result.spline is not None and np.linalg.det(result.spline.affine[1:]) < 0
-        return (surface is not None and surface.inside_out) != mirrored
+        if shaded.kind is _Kind.REST and result.factor is not None and not result.factor.has_modes:
+            self._warps.request_if_idle(_Request(result.inputs, _Kind.REFINE, result))
 
     def _on_failure(self, error: Exception) -> None:
         raise error

@@ -7,12 +7,15 @@ import pyvista as pv
 from numpy.typing import NDArray
 from vtkmodules.vtkCommonCore import reference
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
-from vtkmodules.vtkFiltersCore import vtkTriangleMeshPointNormals
+from vtkmodules.vtkFiltersCore import vtkBinnedDecimation, vtkTriangleMeshPointNormals
 
 from pinwarp.core.mesh import Mesh
 
 # Never 0: a ray through an exact edge would fall between two triangles.
 TOLERANCE = 1e-9
+# Meshes above this many triangles get a stand-in of about that many for while things move.
+LARGE = 150_000
+STAND_IN = 40_000
 
 
 class Surface:
@@ -24,14 +27,18 @@ class Surface:
     ----------
     mesh
         The mesh; its arrays are copied in single precision for drawing.
+
+    Attributes
+    ----------
+    stand_in
+        A coarse copy of a large mesh, drawn while something moves; None for smaller ones.
     """
 
     def __init__(self, mesh: Mesh) -> None:
         self.mesh = mesh
-        self.polydata = triangles(mesh.vertices, mesh.faces)
-        self.polydata.point_data["Normals"] = shading_normals(self.polydata)
-        self.polydata.point_data.active_normals_name = "Normals"
+        self.polydata = shaded(mesh.vertices, mesh.faces)
         self.diagonal = mesh.diagonal
+        self.stand_in = _stand_in(self.polydata) if len(mesh.faces) > LARGE else None
         self.inside_out = _signed_volume(mesh) < 0
         self._locator = vtkStaticCellLocator()
         self._locator.SetDataSet(self.polydata)
@@ -74,6 +81,32 @@ def shading_normals(polydata: pv.PolyData) -> NDArray[np.float32]:
     algorithm.Update()
     normals = pv.wrap(algorithm.GetOutput()).point_data["Normals"]
     return np.array(normals, dtype=np.float32)
+
+
+def shaded(vertices: NDArray, faces: NDArray) -> pv.PolyData:
+    """Return VTK's picture of a triangle mesh with its shading normals."""
+    polydata = triangles(vertices, faces)
+    polydata.point_data["Normals"] = shading_normals(polydata)
+    polydata.point_data.active_normals_name = "Normals"
+    return polydata
+
+
+def _stand_in(polydata: pv.PolyData) -> Mesh | None:
+    """Merge the vertices of a large mesh bin by bin; a million triangles take a quarter second."""
+    size = np.maximum(np.array(polydata.bounds_size), 1e-12)
+    # A surface crosses about two triangles' worth of each bin that it touches.
+    bin_size = np.sqrt(2 * polydata.area / STAND_IN)
+    divisions = np.clip(np.ceil(size / bin_size), 2, 1000).astype(int)
+    algorithm = vtkBinnedDecimation()
+    algorithm.SetInputData(polydata)
+    algorithm.SetNumberOfDivisions(*divisions.tolist())
+    algorithm.AutoAdjustNumberOfDivisionsOff()
+    algorithm.SetPointGenerationModeToBinAverages()
+    algorithm.Update()
+    coarse = pv.wrap(algorithm.GetOutput())
+    if not coarse.n_cells:
+        return None
+    return Mesh(coarse.points, coarse.regular_faces)
 
 
 def _signed_volume(mesh: Mesh) -> float:

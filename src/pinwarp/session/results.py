@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import weakref
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,11 +11,15 @@ from numpy.typing import NDArray
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.factor import SourceFactor, factorise
 from pinwarp.core.landmarks import Position, Role, Side, positions
+from pinwarp.core.live import Influence, PenaltySweep, PreviewPoints, can_follow, preview
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import PenaltyConvention, Spline, solve
 from pinwarp.session.session import Session
 
 Matrix = NDArray[np.float64]
+
+# Up to here the eigendecomposition is done along with the solve; above, once the hand rests.
+EAGER_MODES = 300
 
 
 @dataclass(frozen=True)
@@ -27,11 +32,20 @@ class WarpInputs:
     convention: PenaltyConvention
     planar: bool
     mesh: Mesh | None
+    stand_in: Mesh | None
     passengers: tuple[Position, ...]
 
     @classmethod
-    def of(cls, session: Session) -> WarpInputs:
-        """Collect the inputs from a session."""
+    def of(cls, session: Session, stand_in: Mesh | None = None) -> WarpInputs:
+        """Collect the inputs from a session.
+
+        Parameters
+        ----------
+        session
+            What is to be warped.
+        stand_in
+            A coarse source mesh, drawn while something moves; None where the mesh itself will do.
+        """
         pairs = session.pairs
         return cls(
             source=tuple(pair.source for pair in pairs if pair.source is not None),
@@ -40,6 +54,7 @@ class WarpInputs:
             convention=session.convention,
             planar=session.planar,
             mesh=session.mesh(Side.SOURCE),
+            stand_in=stand_in,
             passengers=tuple(
                 landmark.source
                 for landmark in session.landmarks
@@ -61,8 +76,10 @@ class WarpResult:
     residuals : (n,) float64
         Distance of each warped source landmark from its destination, in mesh units.
     vertices : (m, 3) float32 or None
-        The warped source mesh, for the screen.
-    passengers : (k, 3) float64
+        The warped source mesh, for the screen; None too in a preview that warps the stand-in.
+    stand_in : (k, 3) float32 or None
+        The warped stand-in.
+    passengers : (p, 3) float64
         The warped passengers.
     problem
         Why there is no warp, in words for the user, where that is an error.
@@ -73,6 +90,7 @@ class WarpResult:
     spline: Spline | None = None
     residuals: Matrix | None = None
     vertices: NDArray[np.float32] | None = None
+    stand_in: NDArray[np.float32] | None = None
     passengers: Matrix | None = None
     problem: str | None = None
 
@@ -86,7 +104,7 @@ class WarpResult:
     @property
     def flexibility(self) -> float | None:
         """Share of non-affine freedom left; None where the penalty has nothing to act on."""
-        if self.factor is None or not len(self.factor.poles):
+        if self.factor is None or not self.factor.has_modes or not len(self.factor.poles):
             return None
         if self.inputs.convention is PenaltyConvention.OPYNSIM and self.inputs.penalty > 0:
             return None
@@ -94,10 +112,20 @@ class WarpResult:
 
 
 class WarpSolver:
-    """Solves sessions, keeping what the next one may share. For use by one thread at a time."""
+    """Solves sessions, keeping what the next one may share. For use by one thread at a time.
+
+    Attributes
+    ----------
+    factorisations, solves, evaluations
+        How often each was really done, for tests and for the curious.
+    """
 
     def __init__(self) -> None:
         self._last: WarpResult | None = None
+        self._moving: WarpResult | None = None
+        self._points: weakref.WeakKeyDictionary[Mesh, PreviewPoints] = weakref.WeakKeyDictionary()
+        self._sweep: tuple[object, PenaltySweep] | None = None
+        self._influence: tuple[object, Influence] | None = None
         self.factorisations = 0
         self.solves = 0
         self.evaluations = 0
@@ -107,58 +135,152 @@ class WarpSolver:
         last = self._last
         if last is not None and last.inputs == inputs:
             return last
-        result = self._solve(inputs, last)
-        self._last = result
+        # A new state of rest: the shortcuts from the old one are of no more use.
+        self._influence = None
+        result = self._solve_landmarks(inputs)
+        if result.factor is not None and result.spline is not None:
+            if len(inputs.source) <= EAGER_MODES:
+                _ = result.factor.modes
+            kept = last if last is not None and last.spline is result.spline else WarpResult(inputs)
+            result = replace(
+                result,
+                vertices=self._unless_kept(
+                    result.spline, inputs.mesh, kept.inputs.mesh, kept.vertices
+                ),
+                stand_in=self._unless_kept(
+                    result.spline, inputs.stand_in, kept.inputs.stand_in, kept.stand_in
+                ),
+            )
+        self._last = self._moving = result
         return result
 
-    def _solve(self, inputs: WarpInputs, last: WarpResult | None) -> WarpResult:
+    def preview(self, inputs: WarpInputs) -> WarpResult:
+        """Return the warp while something moves, by the fastest way that is good enough.
+
+        Compared with the last state of rest, a changed penalty is swept, one changed destination
+        is followed, anything else is evaluated directly. Only the stand-in is warped, if there is.
+        """
+        result = self._solve_landmarks(inputs)
+        self._moving = result
+        mesh = inputs.stand_in or inputs.mesh
+        if result.factor is None or result.spline is None or mesh is None:
+            return result
+        vertices = self._shortcut(inputs, result.factor, mesh)
+        if vertices is None:
+            vertices = self._evaluate(result.spline, mesh)
+        if inputs.stand_in is not None:
+            return replace(result, stand_in=vertices)
+        return replace(result, vertices=vertices)
+
+    def refine(self, result: WarpResult) -> WarpResult:
+        """Compute what the penalty's scale needs, where that was put off."""
+        if result.factor is not None:
+            _ = result.factor.modes
+        return result
+
+    def _solve_landmarks(self, inputs: WarpInputs) -> WarpResult:
+        """Solve, without warping any mesh."""
         if not inputs.source:
             return WarpResult(inputs)
         try:
-            factor, spline = self._spline(inputs, last)
+            factor, spline = self._spline(inputs)
         except PinwarpError as error:
             return WarpResult(inputs, problem=str(error))
-        source = np.array(inputs.source)
-        same_spline = last is not None and last.spline is spline
-        if same_spline and last is not None and last.inputs.mesh is inputs.mesh:
-            vertices = last.vertices
-        else:
-            vertices = self._evaluate(spline, inputs.mesh)
-        passengers = np.array(inputs.passengers).reshape(-1, 3)
+        source, passengers = np.array(inputs.source), np.array(inputs.passengers).reshape(-1, 3)
+        misses = spline.evaluate(source) - np.array(inputs.destination)
         return WarpResult(
             inputs=inputs,
             factor=factor,
             spline=spline,
-            residuals=np.linalg.norm(
-                spline.evaluate(source) - np.array(inputs.destination), axis=1
-            ),
-            vertices=vertices,
+            residuals=np.linalg.norm(misses, axis=1),
             passengers=spline.evaluate(passengers) if len(passengers) else passengers,
         )
 
-    def _spline(self, inputs: WarpInputs, last: WarpResult | None) -> tuple[SourceFactor, Spline]:
-        factor = last.factor if last is not None else None
-        if (
-            last is None
-            or factor is None
-            or (last.inputs.source, last.inputs.planar) != (inputs.source, inputs.planar)
-        ):
+    def _spline(self, inputs: WarpInputs) -> tuple[SourceFactor, Spline]:
+        factor = None
+        for known in (self._moving, self._last):
+            if known is None or known.factor is None:
+                continue
+            if (known.inputs.source, known.inputs.planar) == (inputs.source, inputs.planar):
+                factor = known.factor
+                if known.spline is not None and _solves_the_same(known.inputs, inputs):
+                    return factor, known.spline
+        if factor is None:
             factor = factorise(inputs.source, planar=inputs.planar)
             self.factorisations += 1
-        elif last.spline is not None and (
-            last.inputs.destination,
-            last.inputs.penalty,
-            last.inputs.convention,
-        ) == (inputs.destination, inputs.penalty, inputs.convention):
-            return factor, last.spline
         self.solves += 1
         return factor, solve(factor, inputs.destination, inputs.penalty, inputs.convention)
+
+    def _unless_kept(
+        self,
+        spline: Spline,
+        mesh: Mesh | None,
+        kept_mesh: Mesh | None,
+        kept: NDArray[np.float32] | None,
+    ) -> NDArray[np.float32] | None:
+        """Return the warped mesh: what is kept of the same spline, else evaluated."""
+        if kept is not None and mesh is kept_mesh:
+            return kept
+        return self._evaluate(spline, mesh)
 
     def _evaluate(self, spline: Spline, mesh: Mesh | None) -> NDArray[np.float32] | None:
         if mesh is None:
             return None
         self.evaluations += 1
-        return spline.evaluate(mesh.vertices).astype(np.float32)
+        return preview(spline, self._preview_points(mesh))
+
+    def _preview_points(self, mesh: Mesh) -> PreviewPoints:
+        if mesh not in self._points:
+            self._points[mesh] = PreviewPoints.of(mesh.vertices)
+        return self._points[mesh]
+
+    def _shortcut(
+        self, inputs: WarpInputs, factor: SourceFactor, mesh: Mesh
+    ) -> NDArray[np.float32] | None:
+        last = self._last
+        if last is None or last.spline is None:
+            return None
+        was = last.inputs
+        if (was.source, was.planar) != (inputs.source, inputs.planar):
+            return None
+        if was.destination == inputs.destination:
+            if inputs.convention is PenaltyConvention.REGULARISING:
+                return self._swept(inputs, factor, mesh)
+            return None
+        moved = [
+            row
+            for row, (a, b) in enumerate(zip(was.destination, inputs.destination, strict=True))
+            if a != b
+        ]
+        same_penalty = (was.penalty, was.convention) == (inputs.penalty, inputs.convention)
+        if len(moved) != 1 or not same_penalty or not can_follow(factor):
+            return None
+        return self._followed(inputs, last.spline, factor, mesh, moved[0])
+
+    def _swept(self, inputs: WarpInputs, factor: SourceFactor, mesh: Mesh) -> NDArray[np.float32]:
+        key = (inputs.source, inputs.planar, inputs.destination, id(mesh))
+        if self._sweep is None or self._sweep[0] != key:
+            # Free the old basis before the new one is made: each may be 100 MB.
+            self._sweep = self._influence = None
+            points = self._preview_points(mesh)
+            self._sweep = (key, PenaltySweep(factor, inputs.destination, points))
+        return self._sweep[1].at(inputs.penalty)
+
+    def _followed(
+        self, inputs: WarpInputs, spline: Spline, factor: SourceFactor, mesh: Mesh, row: int
+    ) -> NDArray[np.float32]:
+        key = (row, id(mesh))
+        if self._influence is None or self._influence[0] != key:
+            assert self._last is not None, "only a warp at rest is followed"
+            self._sweep = self._influence = None
+            begin = self._last.inputs.destination[row]
+            points = self._preview_points(mesh)
+            self._influence = (key, Influence(factor, spline, row, begin, points))
+        return self._influence[1].at(inputs.destination[row])
+
+
+def _solves_the_same(a: WarpInputs, b: WarpInputs) -> bool:
+    return (a.destination, a.penalty, a.convention) == (b.destination, b.penalty, b.convention)
 
 
 def warped_mesh(session: Session) -> Mesh:

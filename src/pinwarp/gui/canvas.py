@@ -1,0 +1,242 @@
+"""One side's picture: meshes, overlay, landmarks and camera."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+from numpy.typing import NDArray
+from qtpy.QtCore import QPointF
+from qtpy.QtGui import QResizeEvent
+from qtpy.QtWidgets import QWidget
+
+from pinwarp.core.landmarks import Side
+from pinwarp.gui import theme
+from pinwarp.gui.drawn_mesh import DrawnMesh, OverlayWarp
+from pinwarp.gui.fast_view import FastView
+from pinwarp.gui.marker_layer import MarkerLayer
+from pinwarp.gui.scene import Scene
+from pinwarp.gui.surface import Surface, shaded
+
+_COLOURS = {Side.SOURCE: theme.SOURCE_COLOUR, Side.DESTINATION: theme.DESTINATION_COLOUR}
+_BONE = {"ambient": 0.2, "diffuse": 0.92, "specular": 0.16, "specular_power": 18}
+_OVERLAY = {"specular": 0.2, "specular_power": 20}
+# Key, fill and rim light: place relative to the camera, and strength.
+_LIGHTS = (((-0.5, 0.7, 1.0), 0.85), ((0.9, 0.1, 0.7), 0.42), ((0.0, 0.8, -1.0), 0.25))
+# A frame slower than this is replaced by a stand-in's while something moves.
+SLOW_FRAME = 0.040
+
+
+class Canvas(FastView):
+    """Draws a scene and the overlay; knows where things are on the screen."""
+
+    def __init__(self, side: Side, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.side = side
+        self.layer = MarkerLayer(self, side.value.capitalize())
+        self.surface: Surface | None = None
+        self._scene: Scene | None = None
+        bone = {"color": _COLOURS[side]} | _BONE
+        warped = {"color": theme.OVERLAY_COLOUR} | _OVERLAY
+        self._full = DrawnMesh(self, "surface", **bone)
+        self._coarse = DrawnMesh(self, "surface stand-in", **bone)
+        self._overlay = DrawnMesh(self, "overlay", **warped)
+        self._coarse_overlay = DrawnMesh(self, "overlay stand-in", **warped)
+        self._full_frame_seconds = 0.0
+        self._warping = self._orbiting = False
+        self.set_background(theme.BACKGROUND_BOTTOM, top=theme.BACKGROUND_TOP)
+        self._set_lights()
+        self.setMinimumSize(160, 160)
+
+    def _set_lights(self) -> None:
+        """Key, fill and rim light that move with the camera."""
+        self.remove_all_lights()
+        for place, strength in _LIGHTS:
+            light = pv.Light(position=place, light_type="camera light", intensity=strength)
+            self.add_light(light)
+
+    def update(self) -> None:
+        """Schedule a paint of the bones and of the sheet above them, in the same turn."""
+        super().update()
+        layer = getattr(self, "layer", None)
+        if layer is not None:
+            layer.update()
+
+    def show_surface(self, surface: Surface | None) -> None:
+        """Show another mesh on this side and look at it, or none."""
+        if surface is self.surface:
+            return
+        self.surface = surface
+        self._full.remove()
+        self._coarse.remove()
+        if surface is not None:
+            self._full.show(surface.polydata)
+            if surface.stand_in is not None:
+                self._coarse.show(shaded(surface.stand_in.vertices, surface.stand_in.faces))
+            self.look_at_all()
+        self._full_frame_seconds = 0.0
+        self._choose_detail()
+
+    def show_scene(self, scene: Scene) -> None:
+        """Show another state of the session; the mesh is set by :meth:`show_surface`."""
+        if scene == self._scene:
+            return
+        self._scene = scene
+        self.layer.set_markers(scene.markers)
+        self.layer.hint = scene.hint
+        self._choose_detail()
+
+    def show_overlay(self, warps: Sequence[OverlayWarp | None]) -> None:
+        """Show the warped source over this side's mesh: in full, as a stand-in, or both."""
+        for drawn, warp in zip((self._overlay, self._coarse_overlay), warps, strict=True):
+            if warp is None:
+                continue
+            # One layer of a translucent bone needs no depth peeling.
+            culling = "front" if warp.inside_out else "back"
+            drawn.write(warp.mesh, warp.vertices, warp.normals, culling=culling)
+        if not self.camera.is_set:
+            self.look_at_all()
+        else:
+            self.renderer.ResetCameraClippingRange()
+        self._choose_detail()
+
+    def hide_overlay(self) -> None:
+        """Show no warped source."""
+        self._overlay.remove()
+        self._coarse_overlay.remove()
+        self.update()
+
+    @property
+    def overlay_points(self) -> NDArray | None:
+        """The vertices of the overlay as drawn, None where there is none."""
+        drawn = self._coarse_overlay if self.is_coarse else self._overlay
+        if drawn.polydata is None:
+            drawn = self._overlay
+        return None if drawn.polydata is None else np.array(drawn.polydata.points)
+
+    # Detail: a stand-in while something moves and a frame in full would be slow
+
+    @property
+    def is_slow(self) -> bool:
+        """Whether a frame in full detail takes longer than the eye forgives in motion."""
+        return self._full_frame_seconds > SLOW_FRAME
+
+    @property
+    def is_coarse(self) -> bool:
+        """Whether the stand-in is drawn now."""
+        return self._is_moving and self.is_slow
+
+    def set_warping(self, warping: bool) -> None:
+        """Say whether the overlay is being moved by the hand."""
+        if warping != self._warping:
+            self._warping = warping
+            self._choose_detail()
+
+    def set_orbiting(self, orbiting: bool) -> None:
+        """Say whether the camera is being moved by the hand."""
+        if orbiting != self._orbiting:
+            self._orbiting = orbiting
+            self._choose_detail()
+
+    @property
+    def _is_moving(self) -> bool:
+        return self._warping or self._orbiting
+
+    def _choose_detail(self) -> None:
+        coarse, scene = self.is_coarse, self._scene
+        # Smoothed edges cost half a frame in software: they can wait until things rest.
+        self.renderer.SetUseFXAA(not self._is_moving)
+        overlay_visible = scene is not None and scene.overlay_visible
+        for full, stand_in, visible in (
+            (self._full, self._coarse, True),
+            (self._overlay, self._coarse_overlay, overlay_visible),
+        ):
+            replaced = coarse and stand_in.actor is not None
+            full.set_visible(visible and not replaced)
+            stand_in.set_visible(visible and replaced)
+            for drawn in (full, stand_in):
+                if scene is not None and drawn.actor is not None and full is self._overlay:
+                    drawn.actor.prop.opacity = scene.overlay_opacity
+        self.update()
+
+    def paintGL(self) -> None:
+        """Render, and remember what a frame in full detail costs."""
+        super().paintGL()
+        if not self.is_coarse and self._full.actor is not None:
+            # The first frame uploads everything: the cheapest one seen tells the truth, slowly
+            # forgotten in case the machine has become busier.
+            cheapest = self._full_frame_seconds or self.frame_seconds
+            self._full_frame_seconds = min(cheapest * 1.1, self.frame_seconds)
+
+    # The camera
+
+    def look_at_all(self) -> None:
+        """Fit everything, the longest axis upright and the widest across."""
+        mesh = self.surface.polydata if self.surface is not None else self._overlay.polydata
+        if mesh is None:
+            return
+        size = np.array(mesh.bounds_size)
+        up = int(np.argmax(size))
+        along = min((axis for axis in range(3) if axis != up), key=lambda axis: size[axis])
+        direction, upright = np.zeros(3), np.zeros(3)
+        direction[along], upright[up] = 1.0, 1.0
+        centre = np.array(mesh.center)
+        self.camera.focal_point = centre
+        self.camera.position = centre + direction * float(np.linalg.norm(size)) * 2
+        self.camera.up = upright
+        self.reset_camera(render=False, bounds=mesh.bounds)
+        self.camera.zoom(1.25)
+        self.camera.is_set = True
+        self.renderer.ResetCameraClippingRange()
+        self.update()
+
+    def view_key(self) -> tuple[Any, ...]:
+        """Return what decides which landmarks are hidden: camera, size and mesh."""
+        return (self.camera.GetMTime(), self.width(), self.height(), id(self.surface))
+
+    def _projection(self) -> NDArray:
+        aspect = max(1, self.width()) / max(1, self.height())
+        matrix = self.camera.GetCompositeProjectionTransformMatrix(aspect, -1, 1)
+        return np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
+
+    def project(self, points: NDArray) -> NDArray:
+        """Return where (n, 3) positions are on the screen: (n, 2) logical pixels."""
+        clip = np.column_stack([points, np.ones(len(points))]) @ self._projection().T
+        # What lies behind the camera must not appear in front of it.
+        depth = np.where(clip[:, 3] > 1e-12, clip[:, 3], np.nan)
+        x = (clip[:, 0] / depth + 1) / 2 * self.width()
+        y = (1 - clip[:, 1] / depth) / 2 * self.height()
+        return np.nan_to_num(np.column_stack([x, y]), nan=-1e6)
+
+    def _ray(self, at: QPointF) -> tuple[NDArray, NDArray]:
+        """Return the ends of the line of sight through a place on the screen."""
+        x = 2 * at.x() / self.width() - 1
+        y = 1 - 2 * at.y() / self.height()
+        near_far = np.array([[x, y, -1, 1], [x, y, 1, 1]]) @ np.linalg.inv(self._projection()).T
+        near, far = near_far[:, :3] / near_far[:, 3:]
+        return near, far
+
+    def pick(self, at: QPointF) -> NDArray | None:
+        """Return the position on the surface under a place on the screen, None beside it."""
+        if self.surface is None:
+            return None
+        return self.surface.first_hit(*self._ray(at))
+
+    def behind_surface(self, positions: NDArray) -> NDArray[np.bool_]:
+        """Return which positions the mesh hides from the camera."""
+        hidden = np.zeros(len(positions), dtype=bool)
+        if self.surface is None:
+            return hidden
+        eye = np.array(self.camera.position)
+        if self.camera.parallel_projection:
+            eye = eye + np.array(self.camera.direction) * -1e3 * self.surface.diagonal
+        for i, position in enumerate(positions):
+            hidden[i] = self.surface.hides(eye, position)
+        return hidden
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Keep the sheet as large as the picture."""
+        super().resizeEvent(event)
+        self.layer.resize(event.size())

@@ -1,0 +1,122 @@
+"""Large meshes: a stand-in while things move, the full mesh when they rest."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+from qtpy.QtCore import QPoint, QPointF, Qt
+from qtpy.QtGui import QWheelEvent
+from qtpy.QtTest import QTest
+from qtpy.QtWidgets import QApplication
+
+from pinwarp.core.landmarks import Landmark, Side
+from pinwarp.core.mesh import Mesh
+from pinwarp.gui import canvas
+from pinwarp.gui.surface import STAND_IN, Surface
+from pinwarp.session import edits
+
+
+@pytest.fixture
+def large(user, tmp_path, monkeypatch):
+    """A window with a mesh of 180,000 triangles on both sides, on a machine that draws slowly."""
+    sphere = pv.ParametricEllipsoid(30, 50, 150, u_res=301, v_res=301).clean().triangulate()
+    path = tmp_path / "large.ply"
+    sphere.save(path)
+    for side in Side:
+        user.window.documents.open_mesh(side, path)
+    user.settle()
+    places = sphere.points[np.linspace(0, sphere.n_points - 1, 9).astype(int)].astype(float)
+    landmarks = [
+        Landmark(f"p{i}", tuple(p), tuple(p * 1.05 + np.sin(i)))
+        for i, p in enumerate(places.tolist())
+        for p in [np.array(p)]
+    ]
+    user.editor.commit(edits.import_pairs(user.session, landmarks), "Import pairs")
+    user.settle()
+    monkeypatch.setattr(canvas, "SLOW_FRAME", 0.0)
+    return user
+
+
+def drawn(viewport):
+    """The names of what is visible."""
+    parts = ("_full", "_coarse", "_overlay", "_coarse_overlay")
+    return {
+        part
+        for part in parts
+        if getattr(viewport, part).actor is not None
+        and getattr(viewport, part).actor.GetVisibility()
+    }
+
+
+def test_the_stand_in_keeps_the_shape(large):
+    surface = large.window.viewports[Side.SOURCE].surface
+    assert 0.4 * STAND_IN < len(surface.stand_in.faces) < 2 * STAND_IN
+    assert np.allclose(surface.stand_in.bounds, surface.mesh.bounds, atol=0.02 * surface.diagonal)
+
+
+def test_a_small_mesh_needs_no_stand_in():
+    assert Surface(Mesh(np.eye(3), [[0, 1, 2]])).stand_in is None
+
+
+def test_the_stand_in_is_drawn_while_the_slider_moves_and_the_mesh_when_it_rests(large):
+    viewport = large.window.viewports[Side.DESTINATION]
+    assert drawn(viewport) == {"_full", "_overlay"}
+    slider = large.window.panel.slider
+    y = slider.height() // 2
+    large.drag(slider, QPoint(8, y), QPoint(120, y), release=False)
+    assert drawn(viewport) == {"_coarse", "_coarse_overlay"}
+    assert len(viewport.overlay_points) < 60_000
+    coarse = viewport.overlay_points
+    QTest.mouseRelease(slider, Qt.MouseButton.LeftButton, pos=QPoint(120, y))
+    large.settle()
+    assert drawn(viewport) == {"_full", "_overlay"}
+    full = viewport.overlay_points
+    assert len(full) > 80_000
+    # The change-over is no jump: the stand-in lies where the mesh lies.
+    assert np.allclose(coarse.min(axis=0), full.min(axis=0), atol=3)
+    assert np.allclose(coarse.max(axis=0), full.max(axis=0), atol=3)
+
+
+def test_the_stand_in_is_drawn_while_the_camera_orbits(large):
+    viewport = large.window.viewports[Side.SOURCE]
+    centre = viewport.rect().center()
+    large.drag(viewport, centre, centre + QPoint(50, 0), release=False)
+    assert drawn(viewport) == {"_coarse"}
+    QTest.mouseRelease(viewport, Qt.MouseButton.LeftButton, pos=centre + QPoint(50, 0))
+    large.settle()
+    assert drawn(viewport) == {"_full"}
+
+
+def test_zooming_shows_the_mesh_again_soon_after_the_last_notch(large):
+    viewport = large.window.viewports[Side.SOURCE]
+    at = QPointF(viewport.rect().center())
+    event = QWheelEvent(
+        at,
+        QPointF(viewport.mapToGlobal(at.toPoint())),
+        QPoint(),
+        QPoint(0, 120),
+        Qt.MouseButton.NoButton,
+        Qt.KeyboardModifier.NoModifier,
+        Qt.ScrollPhase.NoScrollPhase,
+        False,
+    )
+    QApplication.sendEvent(viewport, event)
+    assert drawn(viewport) == {"_coarse"}
+    large.qtbot.waitUntil(lambda: drawn(viewport) == {"_full"})
+
+
+def test_escape_during_a_slow_drag_brings_the_mesh_back(large):
+    viewport = large.window.viewports[Side.DESTINATION]
+    marker = next(
+        m
+        for m, hidden in zip(viewport.layer.markers, viewport.layer.hidden(), strict=True)
+        if not hidden
+    )
+    before = viewport.overlay_points
+    start = large.place_of(Side.DESTINATION, marker.position)
+    large.drag(viewport, start, start + QPoint(0, 20), release=False)
+    assert viewport.is_coarse
+    large.press(Qt.Key.Key_Escape, widget=viewport)
+    assert drawn(viewport) == {"_full", "_overlay"}
+    assert np.allclose(viewport.overlay_points, before)

@@ -1,0 +1,94 @@
+"""Work off the UI thread."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+
+from pinwarp.gui.jobs import Cancelled, LatestWins, SlowJob
+
+
+@pytest.fixture
+def gate():
+    event = threading.Event()
+    yield event
+    event.set()
+
+
+def test_only_the_newest_of_many_requests_is_computed(qapp, qtbot, gate):
+    started = []
+
+    def compute(request):
+        started.append(request)
+        gate.wait(5)
+        return request
+
+    jobs, arrived = LatestWins(compute), []
+    jobs.computed.connect(arrived.append)
+    for request in range(20):
+        jobs.request(request)
+    qtbot.waitUntil(lambda: started == [0])
+    gate.set()
+    qtbot.waitUntil(lambda: jobs.is_idle)
+    assert started == [0, 19]
+    assert arrived == [0, 19]
+    jobs.shut_down()
+
+
+def test_something_that_can_wait_is_dropped_while_busy(qapp, qtbot, gate):
+    jobs, arrived = LatestWins(lambda request: gate.wait(5) and request), []
+    jobs.computed.connect(arrived.append)
+    jobs.request("first")
+    jobs.request_if_idle("later")
+    gate.set()
+    qtbot.waitUntil(lambda: jobs.is_idle)
+    assert arrived == ["first"]
+    jobs.shut_down()
+
+
+def test_an_error_arrives_as_such_and_the_next_request_goes_on(qapp, qtbot):
+    def compute(request):
+        if request == "bad":
+            raise ValueError(request)
+        return request
+
+    jobs, arrived, errors = LatestWins(compute), [], []
+    jobs.computed.connect(arrived.append)
+    jobs.failed.connect(errors.append)
+    jobs.request("bad")
+    qtbot.waitUntil(lambda: len(errors) == 1)
+    jobs.request("good")
+    qtbot.waitUntil(lambda: arrived == ["good"])
+    jobs.shut_down()
+
+
+def test_a_result_that_comes_after_closing_goes_nowhere(qapp, qtbot, gate):
+    jobs, arrived = LatestWins(lambda request: gate.wait(5) and request), []
+    jobs.computed.connect(arrived.append)
+    jobs.request("late")
+    gate.set()
+    jobs.shut_down()
+    qapp.processEvents()
+    assert arrived == []
+
+
+def test_slow_jobs_run_in_order_with_progress_and_can_be_cancelled(qapp, qtbot, gate):
+    jobs, log = SlowJob(), []
+    jobs.progressed.connect(lambda _share, stage: log.append(stage))
+
+    def long_work(progress):
+        progress(0.1, "begun")
+        gate.wait(5)
+        progress(0.9, "nearly done")
+        return "never"
+
+    jobs.run("Long", long_work, log.append, lambda error: log.append(type(error)))
+    qtbot.waitUntil(lambda: log == ["begun"])
+    jobs.cancel()
+    gate.set()
+    qtbot.waitUntil(lambda: jobs.is_idle)
+    assert log == ["begun", Cancelled]
+    jobs.run("Short", lambda _progress: "done", log.append, log.append)
+    qtbot.waitUntil(lambda: log[-1] == "done")
+    jobs.shut_down()
