@@ -81,12 +81,15 @@ class Canvas(FastView):
 
     def show_scene(self, scene: Scene) -> None:
         """Show another state of the session; the mesh is set by :meth:`show_surface`."""
-        if scene == self._scene:
+        before, self._scene = self._scene, scene
+        if scene == before:
             return
-        self._scene = scene
+        # The sheet repaints by itself: no bone is rendered anew for a label.
         self.layer.set_markers(scene.markers)
         self.layer.hint = scene.hint
-        self._choose_detail()
+        overlay = (scene.overlay_visible, scene.overlay_opacity)
+        if before is None or overlay != (before.overlay_visible, before.overlay_opacity):
+            self._choose_detail()
 
     def show_overlay(self, warps: Sequence[OverlayWarp | None]) -> None:
         """Show the warped source over this side's mesh: in full, as a stand-in, or both."""

@@ -14,8 +14,8 @@ from pinwarp.core.mesh import Mesh
 # Never 0: a ray through an exact edge would fall between two triangles.
 TOLERANCE = 1e-9
 # Meshes above this many triangles get a stand-in of about that many for while things move.
-LARGE = 150_000
-STAND_IN = 40_000
+LARGE = 40_000
+STAND_IN = 16_000
 
 
 class Surface:
