@@ -17,6 +17,7 @@ from qtpy.QtWidgets import QWidget
 from pinwarp.gui import theme
 from pinwarp.gui.marker_painting import EXTENT, draw_label, marker_pixmap
 from pinwarp.gui.scene import Marker
+from pinwarp.session.ghost import Ghost
 
 if TYPE_CHECKING:
     from pinwarp.gui.canvas import Canvas
@@ -31,6 +32,7 @@ class MarkerLayer(QWidget):
         self._title = title
         self.caption = ""
         self.hint = ""
+        self.ghost: Ghost | None = None
         self._markers: tuple[Marker, ...] = ()
         self._hidden = np.zeros(0, dtype=bool)
         self._hidden_for: object = None
@@ -79,6 +81,8 @@ class MarkerLayer(QWidget):
         self._paint_title(painter)
         if self.hint:
             self._paint_hint(painter)
+        if self.ghost is not None:
+            self._paint_ghost(painter, self.ghost)
         self._paint_markers(painter)
         painter.end()
 
@@ -105,6 +109,27 @@ class MarkerLayer(QWidget):
         painter.drawRoundedRect(plate, 10, 10)
         painter.setPen(QColor(theme.INK))
         painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, self.hint)
+
+    def _paint_ghost(self, painter: QPainter, ghost: Ghost) -> None:
+        """Paint a dashed ring where a landmark is expected, in a disc as wide as the doubt."""
+        position = np.array(ghost.position)
+        ((x, y),) = self._canvas.project(position[None])
+        at = QPointF(x, y)
+        colour = QColor(theme.GHOST_COLOUR)
+        if ghost.deviation is not None:
+            radius = ghost.deviation * self._canvas.pixels_per_unit(position)
+            colour.setAlphaF(0.22)
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(colour)
+            painter.drawEllipse(at, radius, radius)
+        for pen in (
+            QPen(QColor(theme.PAPER), 3.5),
+            QPen(QColor(theme.GHOST_COLOUR), 2, Qt.PenStyle.DotLine),
+        ):
+            painter.setPen(pen)
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawEllipse(at, 8, 8)
+        draw_label(painter, f"{ghost.name}?  Space accepts", at)
 
     def _paint_markers(self, painter: QPainter) -> None:
         places, hidden = self.places(), self.hidden()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
@@ -52,6 +54,12 @@ class Surface:
             start, end, TOLERANCE, t, where, local, sub, cell
         )
         return np.array(where) if hit else None
+
+    def closest(self, point: Sequence[float]) -> tuple[NDArray, float]:
+        """Return the place on the surface nearest to a point, and how far off it is."""
+        where, sub, cell, squared = [0.0] * 3, reference(0), reference(0), reference(0.0)
+        self._locator.FindClosestPoint(tuple(point), where, cell, sub, squared)
+        return np.array(where), float(np.sqrt(squared.get()))
 
     def hides(self, eye: NDArray, point: NDArray) -> bool:
         """Whether the surface lies between the eye and a point (points on it are seen)."""
