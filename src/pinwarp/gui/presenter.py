@@ -273,7 +273,7 @@ class Presenter:
     def _on_enable(self, name: str, enabled: bool) -> None:
         verb = "Enable" if enabled else "Disable"
         self._editor.commit(
-            edits.set_enabled(self._editor.committed, name, enabled), f"{verb} {name}"
+            edits.set_enabled(self._editor.committed, [name], enabled), f"{verb} {name}"
         )
 
     def _on_penalty(self, penalty: float) -> None:
