@@ -123,9 +123,48 @@ def rename(session: Session, name: str, new_name: str) -> Session:
     return _changed(session, name, lambda landmark: replace(landmark, name=new_name))
 
 
-def set_enabled(session: Session, name: str, enabled: bool) -> Session:
-    """Let a pair take part in the solve, or not."""
-    return _changed(session, name, lambda landmark: replace(landmark, enabled=enabled))
+def set_enabled(session: Session, names: Iterable[str], enabled: bool) -> Session:
+    """Let pairs take part in the solve, or not."""
+    return _all_changed(session, names, lambda landmark: replace(landmark, enabled=enabled))
+
+
+def set_locked(session: Session, names: Iterable[str], locked: bool) -> Session:
+    """Protect landmarks from being moved by accident, or not."""
+    return _all_changed(session, names, lambda landmark: replace(landmark, locked=locked))
+
+
+def set_role(session: Session, names: Iterable[str], role: Role) -> Session:
+    """Make landmarks pairs or passengers; the positions stay, so that there is a way back."""
+    return _all_changed(session, names, lambda landmark: replace(landmark, role=role))
+
+
+def set_note(session: Session, name: str, note: str) -> Session:
+    """Write down something about a landmark."""
+    return _changed(session, name, lambda landmark: replace(landmark, note=note))
+
+
+def reorder(session: Session, names: Iterable[str], row: int) -> Session:
+    """Move landmarks before the one in a row, keeping their order; the last row + 1 is the end.
+
+    Examples
+    --------
+    >>> session = Session(landmarks=tuple(map(Landmark, "abcd")))
+    >>> [landmark.name for landmark in reorder(session, ["a", "c"], 4).landmarks]
+    ['b', 'd', 'a', 'c']
+    """
+    moving = _set_of(names)
+    before, behind = session.landmarks[:row], session.landmarks[row:]
+    taken = tuple(landmark for landmark in session.landmarks if landmark.name in moving)
+    if missing := moving - {landmark.name for landmark in taken}:
+        raise LandmarkError(f"There is no landmark called {min(missing)}.")
+    return replace(
+        session,
+        landmarks=(
+            *(landmark for landmark in before if landmark.name not in moving),
+            *taken,
+            *(landmark for landmark in behind if landmark.name not in moving),
+        ),
+    )
 
 
 def set_penalty(session: Session, penalty: float) -> Session:
@@ -183,6 +222,11 @@ def import_pairs(session: Session, landmarks: Iterable[Landmark]) -> Session:
     return session
 
 
+def _set_of(names: Iterable[str]) -> set[str]:
+    # One name alone is a string, whose letters are not meant.
+    return {names} if isinstance(names, str) else set(names)
+
+
 def _existing(session: Session, name: str) -> Landmark:
     landmark = session.landmark(name)
     if landmark is None:
@@ -191,11 +235,19 @@ def _existing(session: Session, name: str) -> Landmark:
 
 
 def _changed(session: Session, name: str, change: Callable[[Landmark], Landmark]) -> Session:
-    _existing(session, name)
+    return _all_changed(session, [name], change)
+
+
+def _all_changed(
+    session: Session, names: Iterable[str], change: Callable[[Landmark], Landmark]
+) -> Session:
+    changing = _set_of(names)
+    if missing := changing - {landmark.name for landmark in session.landmarks}:
+        raise LandmarkError(f"There is no landmark called {min(missing)}.")
     return replace(
         session,
         landmarks=tuple(
-            change(landmark) if landmark.name == name else landmark
+            change(landmark) if landmark.name in changing else landmark
             for landmark in session.landmarks
         ),
     )
