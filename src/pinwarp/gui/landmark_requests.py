@@ -241,7 +241,7 @@ class LandmarkRequests:
     def enable(self, name: str, enabled: bool) -> None:
         """Let a pair take part, or not."""
         verb = "Enable" if enabled else "Disable"
-        session = edits.set_enabled(self._editor.committed, name, enabled)
+        session = edits.set_enabled(self._editor.committed, [name], enabled)
         self._editor.commit(session, f"{verb} {name}")
 
 

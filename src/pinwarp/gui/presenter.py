@@ -191,20 +191,14 @@ class Presenter:
         """Predict where the next landmark of a side should be, on that side's surface."""
         editor, result = self._editor, self.result
         surface = self._surface(editor.session.mesh(side))
-        if (
-            surface is None
-            or editor.is_previewing
-            or result is None
-            or result.factor is None
-            or result.spline is None
-            or not result.factor.has_modes
-        ):
+        if surface is None or result is None or editor.is_previewing:
             return None
         name = self.requests.target(side)
-        key = (name, side, editor.session.landmark(name) if name else None, result.spline)
+        landmark = editor.session.landmark(name) if name else None
+        key = (side, landmark, result)
         if self._ghost_keys.get(side) != key:
             self._ghost_keys[side] = key
-            ghost = ghost_of(editor.session, name, side, result.factor, result.spline)
+            ghost = ghost_of(landmark, side, result)
             if ghost is not None:
                 place, _ = surface.closest(ghost.position)
                 ghost = replace(ghost, position=as_position(place))

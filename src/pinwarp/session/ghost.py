@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pinwarp.core.factor import SourceFactor
-from pinwarp.core.landmarks import Position, Side, as_position
+from pinwarp.core.landmarks import Landmark, Position, Side, as_position
 from pinwarp.core.prediction import inverse_warp, prediction_of
-from pinwarp.core.spline import PenaltyConvention, Spline
-from pinwarp.session.session import Session
+from pinwarp.core.spline import PenaltyConvention
+from pinwarp.session.results import WarpResult
 
 # With fewer pairs a prediction says more about the pairs than about the bone.
 LEAST_PAIRS = 3
@@ -39,30 +38,26 @@ class Ghost:
     deviation: float | None
 
 
-def ghost_of(
-    session: Session, name: str | None, side: Side, factor: SourceFactor, spline: Spline
-) -> Ghost | None:
+def ghost_of(landmark: Landmark | None, side: Side, result: WarpResult) -> Ghost | None:
     """Predict one side of a landmark from its other one.
 
     Parameters
     ----------
-    session
-        Holds the landmark and at least three pairs.
-    name, side
+    landmark, side
         Which landmark lacks which side; None for no landmark.
-    factor, spline
-        The warp of the session's pairs.
+    result
+        The warp of at least three pairs.
 
     Returns
     -------
     Ghost or None
         None where there is nothing to predict from, or the warp cannot be inverted there.
     """
-    landmark = session.landmark(name) if name is not None else None
-    if landmark is None or landmark.position(side) is not None:
+    factor, spline = result.factor, result.spline
+    if landmark is None or landmark.position(side) is not None or factor is None or spline is None:
         return None
     known = landmark.position(side.other)
-    if known is None or len(session.pairs) < LEAST_PAIRS:
+    if known is None or len(factor.source) < LEAST_PAIRS:
         return None
     if side is Side.DESTINATION:
         source = np.array([known])
@@ -73,10 +68,9 @@ def ghost_of(
             return None
         expected = source
     deviation = None
-    if spline.convention is PenaltyConvention.REGULARISING:
-        pairs = session.pairs
-        destination = np.array([pair.destination for pair in pairs])
-        prediction = prediction_of(factor, destination, spline.penalty)
+    # Not while the eigenvalues are put off: they would hold the hand up.
+    if spline.convention is PenaltyConvention.REGULARISING and factor.has_modes:
+        prediction = prediction_of(factor, np.array(result.inputs.destination), spline.penalty)
         if prediction is not None:
             deviation = float(prediction.standard_deviation(source)[0])
     return Ghost(landmark.name, side, as_position(expected[0]), deviation)
