@@ -57,7 +57,7 @@ SPECS = (
     ActionSpec("select_none", "Select &None", "Esc"),
     ActionSpec("overlay", "Show &Warped Source", "W", "overlay", "Over the destination", True),
     ActionSpec("fit", "&Fit Both Views", "Home", "fit", "Look at both bones as a whole"),
-    ActionSpec("accept_ghost", "&Accept Ghost", "Space", "", "Place the landmark where it is expected"),
+    ActionSpec("accept_ghost", "&Accept Ghost", "Space", "", "Place it where it is expected"),
     ActionSpec("snap", "S&nap to Surface", "S", "", "Put the selection back onto the bone"),
     ActionSpec("lock", "&Lock Landmarks", "L", "lock", "Freeze all landmarks", True),
     ActionSpec("set_nudge", "Nudge Ste&p…", "", "", "How far an arrow key moves a landmark"),

@@ -140,7 +140,7 @@ class LandmarkRequests:
         self._editor.commit(self._editor.session, f"Move {name}")
 
     def nudge(self, side: Side, across: int, upwards: int) -> None:
-        """Move the selected landmarks by steps along the screen; those on the surface stay on it."""
+        """Move the selection by steps along the screen; what is on the surface stays on it."""
         viewport = self._viewports[side]
         surface = viewport.surface
         if surface is None:
@@ -162,6 +162,13 @@ class LandmarkRequests:
         if surface is None:
             return
         self._move_selected(side, lambda position: surface.closest(position)[0], "Snap")
+
+    def distance_off(self, landmark: Landmark, side: Side) -> float | None:
+        """Return how far off the surface a landmark is; None where it lies on it."""
+        surface, position = self._viewports[side].surface, landmark.position(side)
+        if surface is None or position is None or is_on(surface, np.array(position)):
+            return None
+        return surface.closest(position)[1]
 
     def _move_selected(
         self, side: Side, move: Callable[[NDArray], NDArray], verb: str, *, merge: bool = False

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from qtpy.QtCore import QByteArray, QSettings, QSize, Qt
-from qtpy.QtGui import QCloseEvent
+from qtpy.QtGui import QAction, QCloseEvent
 from qtpy.QtWidgets import (
     QDockWidget,
     QHBoxLayout,
@@ -18,6 +18,7 @@ from qtpy.QtWidgets import (
     QSlider,
     QSplitter,
     QToolBar,
+    QVBoxLayout,
     QWidget,
 )
 
@@ -25,15 +26,17 @@ from pinwarp.core.landmarks import Side
 from pinwarp.gui.actions import icon, make_actions
 from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Documents
+from pinwarp.gui.guidance import Guidance
+from pinwarp.gui.guide_bar import GuideBar
 from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY
 from pinwarp.gui.jobs import SlowJob
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
 from pinwarp.gui.penalty_panel import PenaltyPanel
 from pinwarp.gui.presenter import Presenter
 from pinwarp.gui.recent_files import RecentFiles
+from pinwarp.gui.shortcut_overlay import ShortcutOverlay
 from pinwarp.gui.viewport import Viewport
 from pinwarp.io.samples import sample_session
-from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 
 _TOOLBAR = (
@@ -46,6 +49,9 @@ _TOOLBAR = (
     "undo",
     "redo",
     "delete_side",
+    None,
+    "lock",
+    "guide",
     None,
     "fit",
     "overlay",
@@ -80,6 +86,9 @@ class MainWindow(QMainWindow):
         self.documents = Documents(
             self.editor, self.jobs, self._dialogs, self._recent, self.presenter.keep_surface
         )
+        self.guidance = Guidance(
+            self.editor, self.presenter, self.documents, self._dialogs, self.guide_bar, self.hint
+        )
         self._connect()
         self._restore_layout()
         self._on_session()
@@ -95,7 +104,14 @@ class MainWindow(QMainWindow):
             splitter.addWidget(self.viewports[side])
             splitter.setStretchFactor(splitter.count() - 1, 1)
         splitter.setSizes([1000, 1000])
-        self.setCentralWidget(splitter)
+        self.guide_bar = GuideBar()
+        centre = QWidget()
+        column = QVBoxLayout(centre)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self.guide_bar)
+        column.addWidget(splitter, 1)
+        self.setCentralWidget(centre)
         self._add_dock("landmarks", "Landmarks", self.table, Qt.DockWidgetArea.RightDockWidgetArea)
         penalty = self._add_dock(
             "penalty", "Warping penalty", self.panel, Qt.DockWidgetArea.BottomDockWidgetArea
@@ -135,17 +151,29 @@ class MainWindow(QMainWindow):
         self._recent_menu.aboutToShow.connect(self._fill_recent)
         fill(file, "open_sample - save save_as -")
         fill(file.addMenu("&Import"), "import_source import_destination import_pairs")
-        fill(file.addMenu("E&xport Landmarks"), "export_source export_destination export_pairs")
+        fill(
+            file.addMenu("E&xport Landmarks"),
+            "export_source export_destination export_pairs export_passengers",
+        )
         fill(file, "export_mesh - quit")
         fill(
             self.menuBar().addMenu("&Edit"),
-            "undo redo - rename delete_side delete_landmark - select_none",
+            "undo redo - rename delete_side delete_landmark - accept_ghost snap lock set_nudge - "
+            "load_template guide set_pattern - select_none",
         )
         view = self.menuBar().addMenu("&View")
         fill(view, "overlay fit -")
         for dock in self.findChildren(QDockWidget):
             view.addAction(dock.toggleViewAction())
-        fill(self.menuBar().addMenu("&Help"), "about_penalty about")
+        fill(self.menuBar().addMenu("&Help"), "shortcuts - about_penalty about")
+        self.shortcuts = ShortcutOverlay(
+            self,
+            [
+                (menu.title().replace("&", ""), _actions_of(menu))
+                for menu in self.menuBar().findChildren(QMenu)
+                if menu.parent() is self.menuBar()
+            ],
+        )
 
     def _make_toolbar(self) -> None:
         bar = QToolBar("Tools", self)
@@ -205,8 +233,15 @@ class MainWindow(QMainWindow):
             "undo": editor.undo,
             "redo": editor.redo,
             "rename": self._rename,
-            "delete_side": self.presenter.delete_side,
-            "delete_landmark": self.presenter.delete_landmarks,
+            "delete_side": self.presenter.requests.delete_side,
+            "delete_landmark": self.presenter.requests.delete_landmarks,
+            "accept_ghost": self.presenter.requests.accept_ghost,
+            "snap": self.presenter.requests.snap,
+            "set_nudge": self.guidance.ask_nudge,
+            "set_pattern": self.guidance.ask_pattern,
+            "load_template": self.guidance.load_template,
+            "export_passengers": documents.export_passengers,
+            "shortcuts": self.shortcuts.toggle,
             "select_none": editor.select,
             "fit": self._fit,
             "about": lambda: self._dialogs.tell("About pinwarp", ABOUT),
@@ -216,6 +251,10 @@ class MainWindow(QMainWindow):
             # Qt's "checked" argument is of no use to any of them.
             actions[key].triggered.connect(lambda _checked=False, call=function: call())
         actions["overlay"].toggled.connect(lambda on: editor.look(overlay=on))
+        actions["lock"].toggled.connect(lambda on: editor.look(locked=on))
+        actions["guide"].toggled.connect(self.guidance.switch)
+        self.presenter.requests.refused.connect(self._say)
+        self.guidance.said.connect(self._say)
         self.opacity.valueChanged.connect(lambda value: editor.look(opacity=value / 100))
         for side, viewport in self.viewports.items():
             viewport.files_dropped.connect(
@@ -288,32 +327,16 @@ class MainWindow(QMainWindow):
         actions["export_mesh"].setEnabled(
             session.mesh(Side.SOURCE) is not None and bool(session.pairs)
         )
-        self._on_hint()
+        self.guidance.show()
 
     def _on_view(self, _changed: object = None) -> None:
         view = self.editor.view
         self.actions_by_key["overlay"].setChecked(view.overlay)
+        self.actions_by_key["lock"].setChecked(view.locked)
+        self.actions_by_key["guide"].setChecked(view.guided is not None)
         self.opacity.setEnabled(view.overlay)
         self.opacity.setValue(round(view.opacity * 100))
-        self._on_hint()
-
-    def _on_hint(self) -> None:
-        """Say what a click would do right now."""
-        editor, session = self.editor, self.editor.session
-        if editor.view.hovered is not None:
-            landmark = session.landmark(editor.view.hovered)
-            state = f": {landmark.state.value}" if landmark is not None else ""
-            self.hint.setText(f"{editor.view.hovered}{state} – click selects, drag moves it")
-            return
-        missing = [side for side in Side if session.mesh(side) is None]
-        if missing:
-            self.hint.setText(f"Open the {missing[0].value} mesh to begin, or drop it on its view.")
-            return
-        targets = [
-            f"on the {side.value} places {edits.next_to_place(session, side) or 'a new landmark'}"
-            for side in Side
-        ]
-        self.hint.setText(f"A click {targets[0]}, {targets[1]}. Drag to orbit.")
+        self.guidance.show()
 
     # Slow jobs
 
@@ -360,3 +383,12 @@ class MainWindow(QMainWindow):
         for viewport in self.viewports.values():
             viewport.close()
         super().closeEvent(event)
+
+
+def _actions_of(menu: QMenu) -> list[QAction]:
+    """Return the actions of a menu and of those inside it."""
+    found: list[QAction] = []
+    for action in menu.actions():
+        inner = action.menu()
+        found.extend(_actions_of(inner) if inner is not None else [action])
+    return found

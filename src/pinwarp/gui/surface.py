@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -55,11 +56,14 @@ class Surface:
         )
         return np.array(where) if hit else None
 
-    def closest(self, point: Sequence[float]) -> tuple[NDArray, float]:
+    def closest(self, point: Sequence[float] | NDArray) -> tuple[NDArray, float]:
         """Return the place on the surface nearest to a point, and how far off it is."""
-        where, sub, cell, squared = [0.0] * 3, reference(0), reference(0), reference(0.0)
-        self._locator.FindClosestPoint(tuple(point), where, cell, sub, squared)
-        return np.array(where), float(np.sqrt(squared.get()))
+        where = [0.0] * 3
+        sub, cell, squared = reference(0), reference(0), reference(0.0)
+        self._locator.FindClosestPoint(  # type: ignore[call-overload]  # stubs miss references
+            tuple(point), where, cell, sub, squared
+        )
+        return np.array(where), math.dist(point, where)
 
     def hides(self, eye: NDArray, point: NDArray) -> bool:
         """Whether the surface lies between the eye and a point (points on it are seen)."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from qtpy.QtCore import QEvent, QPointF, Qt, QTimer, Signal
 from qtpy.QtGui import QDragEnterEvent, QDropEvent, QKeyEvent, QMouseEvent, QWheelEvent
 from qtpy.QtWidgets import QWidget
@@ -105,7 +106,7 @@ class Viewport(Canvas):
         at = event.position() + press.offset
         if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
             # Off the surface: a femoral head's centre lies inside the bone.
-            position = self.in_view_plane(at, np.array(press.marker.position))
+            position: NDArray | None = self.in_view_plane(at, np.array(press.marker.position))
         else:
             position = self.pick(at)
         if position is not None:

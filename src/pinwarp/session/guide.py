@@ -63,7 +63,8 @@ def next_incomplete(session: Session, after: str | None, *, backwards: bool = Fa
 
     Examples
     --------
-    >>> session = Session(landmarks=(Landmark("a"), Landmark("b", (0, 0, 0), (1, 1, 1)), Landmark("c")))
+    >>> pair = Landmark("b", (0, 0, 0), (1, 1, 1))
+    >>> session = Session(landmarks=(Landmark("a"), pair, Landmark("c")))
     >>> next_incomplete(session, "a"), next_incomplete(session, "c")
     ('c', 'a')
     """
