@@ -5,7 +5,15 @@ from __future__ import annotations
 import html
 
 from qtpy.QtCore import Qt, Signal
-from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QProgressBar, QPushButton, QWidget
+from qtpy.QtWidgets import (
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QProgressBar,
+    QPushButton,
+    QSizePolicy,
+    QWidget,
+)
 
 from pinwarp.core.landmarks import LandmarkState
 from pinwarp.gui import theme
@@ -33,8 +41,10 @@ class GuideBar(QFrame):
         self.setAutoFillBackground(True)
         self.words = QLabel()
         self.words.setTextFormat(Qt.TextFormat.RichText)
+        # A long name must not push the table aside.
+        self.words.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.progress = QProgressBar()
-        self.progress.setFixedWidth(160)
+        self.progress.setFixedWidth(110)
         self.progress.setFormat("%v of %m")
         self.back = QPushButton("Back")
         self.skip = QPushButton("Skip")

@@ -137,6 +137,11 @@ class MainWindow(QMainWindow):
 
     def _make_menus(self) -> None:
         actions = self.actions_by_key
+        # Kept: Python must not let go of a menu that Qt still shows.
+        self._menus = [
+            self.menuBar().addMenu(title) for title in ("&File", "&Edit", "&View", "&Help")
+        ]
+        file, edit, view, about = self._menus
 
         def fill(menu: QMenu, keys: str) -> None:
             for key in keys.split():
@@ -145,7 +150,6 @@ class MainWindow(QMainWindow):
                 else:
                     menu.addAction(actions[key])
 
-        file = self.menuBar().addMenu("&File")
         fill(file, "open_source open_destination - open_session")
         self._recent_menu = file.addMenu("Open &Recent")
         self._recent_menu.aboutToShow.connect(self._fill_recent)
@@ -157,22 +161,16 @@ class MainWindow(QMainWindow):
         )
         fill(file, "export_mesh - quit")
         fill(
-            self.menuBar().addMenu("&Edit"),
+            edit,
             "undo redo - rename delete_side delete_landmark - accept_ghost snap lock set_nudge - "
             "load_template guide set_pattern - select_none",
         )
-        view = self.menuBar().addMenu("&View")
         fill(view, "overlay fit -")
         for dock in self.findChildren(QDockWidget):
             view.addAction(dock.toggleViewAction())
-        fill(self.menuBar().addMenu("&Help"), "shortcuts - about_penalty about")
+        fill(about, "shortcuts - about_penalty about")
         self.shortcuts = ShortcutOverlay(
-            self,
-            [
-                (menu.title().replace("&", ""), _actions_of(menu))
-                for menu in self.menuBar().findChildren(QMenu)
-                if menu.parent() is self.menuBar()
-            ],
+            self, [(menu.title().replace("&", ""), _actions_of(menu)) for menu in self._menus]
         )
 
     def _make_toolbar(self) -> None:

@@ -129,7 +129,7 @@ class MarkerLayer(QWidget):
             painter.setPen(pen)
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawEllipse(at, 8, 8)
-        draw_label(painter, f"{ghost.name}?  Space accepts", at)
+        draw_label(painter, f"{ghost.name}?  Space accepts", at, self.width())
 
     def _paint_markers(self, painter: QPainter) -> None:
         places, hidden = self.places(), self.hidden()
@@ -147,5 +147,5 @@ class MarkerLayer(QWidget):
         for i in order:
             if self._markers[i].labelled:
                 painter.setOpacity(0.5 if hidden[i] else 1.0)
-                draw_label(painter, self._markers[i].name, QPointF(*places[i]))
+                draw_label(painter, self._markers[i].name, QPointF(*places[i]), self.width())
         painter.setOpacity(1.0)
