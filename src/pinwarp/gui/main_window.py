@@ -27,10 +27,12 @@ from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Documents
 from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY
 from pinwarp.gui.jobs import SlowJob
+from pinwarp.gui.landmark_panel import LandmarkPanel
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
 from pinwarp.gui.penalty_panel import PenaltyPanel
 from pinwarp.gui.presenter import Presenter
 from pinwarp.gui.recent_files import RecentFiles
+from pinwarp.gui.table_presenter import TablePresenter
 from pinwarp.gui.viewport import Viewport
 from pinwarp.io.samples import sample_session
 from pinwarp.session import edits
@@ -73,12 +75,21 @@ class MainWindow(QMainWindow):
         self.panel = PenaltyPanel()
         self.jobs = SlowJob(self)
         self.actions_by_key = make_actions(self)
+        self.landmarks = LandmarkPanel(self.table, self.actions_by_key)
         self._dialogs = dialogs or Dialogs(self)
         self._recent = RecentFiles(settings)
         self._lay_out()
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
         self.documents = Documents(
             self.editor, self.jobs, self._dialogs, self._recent, self.presenter.keep_surface
+        )
+        self.table_presenter = TablePresenter(
+            self.editor,
+            self.model,
+            self.landmarks,
+            self.actions_by_key,
+            self._dialogs,
+            self.presenter.complain,
         )
         self._connect()
         self._restore_layout()
@@ -96,7 +107,9 @@ class MainWindow(QMainWindow):
             splitter.setStretchFactor(splitter.count() - 1, 1)
         splitter.setSizes([1000, 1000])
         self.setCentralWidget(splitter)
-        self._add_dock("landmarks", "Landmarks", self.table, Qt.DockWidgetArea.RightDockWidgetArea)
+        self._add_dock(
+            "landmarks", "Landmarks", self.landmarks, Qt.DockWidgetArea.RightDockWidgetArea
+        )
         penalty = self._add_dock(
             "penalty", "Warping penalty", self.panel, Qt.DockWidgetArea.BottomDockWidgetArea
         )
@@ -139,10 +152,12 @@ class MainWindow(QMainWindow):
         fill(file, "export_mesh - quit")
         fill(
             self.menuBar().addMenu("&Edit"),
-            "undo redo - rename delete_side delete_landmark - select_none",
+            "undo redo - copy paste - rename rename_many note - "
+            "toggle_enabled toggle_locked toggle_role - move_up move_down - "
+            "delete_side delete_landmark - select_none next_incomplete filter",
         )
         view = self.menuBar().addMenu("&View")
-        fill(view, "overlay fit -")
+        fill(view, "overlay fit - show_coordinates -")
         for dock in self.findChildren(QDockWidget):
             view.addAction(dock.toggleViewAction())
         fill(self.menuBar().addMenu("&Help"), "about_penalty about")
@@ -204,7 +219,6 @@ class MainWindow(QMainWindow):
             "quit": self.close,
             "undo": editor.undo,
             "redo": editor.redo,
-            "rename": self._rename,
             "delete_side": self.presenter.delete_side,
             "delete_landmark": self.presenter.delete_landmarks,
             "select_none": editor.select,
@@ -236,12 +250,6 @@ class MainWindow(QMainWindow):
         """Open the sample bones as a new session, asking about unsaved work first."""
         if self.documents.may_lose_changes():
             self.documents.open_session(sample_session(), as_new=True)
-
-    def _rename(self) -> None:
-        names = self.editor.selection.names
-        if names and (row := self.editor.session.index_of(names[0])) is not None:
-            self.table.setFocus()
-            self.table.edit(self.model.index(row, 0))
 
     def _fit(self) -> None:
         for viewport in self.viewports.values():
@@ -282,7 +290,7 @@ class MainWindow(QMainWindow):
             shortcut = actions[key].shortcut().toString()
             actions[key].setToolTip(f"{plain} {label or ''}".strip() + f" ({shortcut})")
         has_selection = bool(editor.selection.names)
-        for key in ("rename", "delete_side", "delete_landmark", "select_none"):
+        for key in ("delete_side", "delete_landmark", "select_none"):
             actions[key].setEnabled(has_selection)
         session = editor.session
         actions["export_mesh"].setEnabled(
@@ -353,6 +361,7 @@ class MainWindow(QMainWindow):
         self._settings.setValue("layout", self.saveState())
         self.jobs.shut_down()
         self.presenter.shut_down()
+        self.table_presenter.shut_down()
         for signal in (self.editor.session_changed, self.editor.selection_changed):
             signal.disconnect(self._on_session)
         self.editor.view_changed.disconnect(self._on_view)

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import PenaltyConvention
@@ -95,8 +94,6 @@ class Presenter:
         self._warps.failed.connect(self._on_failure)
         for side, viewport in self._viewports.items():
             self._connect_viewport(side, viewport)
-        self._model.rename_requested.connect(self._on_rename)
-        self._model.enable_requested.connect(self._on_enable)
         self._table.selection_requested.connect(
             lambda names, side: editor.select(*names, side=Side(side) if side else None)
         )
@@ -257,24 +254,6 @@ class Presenter:
 
     def _on_drop(self, name: str, _side: Side) -> None:
         self._editor.commit(self._editor.session, f"Move {name}")
-
-    def _on_rename(self, name: str, new_name: str) -> None:
-        editor = self._editor
-        try:
-            session = edits.rename(editor.committed, name, new_name)
-        except PinwarpError as error:
-            self.complain(str(error))
-            return
-        was_selected = name in editor.selection.names
-        editor.commit(session, f"Rename {name}")
-        if was_selected:
-            editor.select(new_name.strip())
-
-    def _on_enable(self, name: str, enabled: bool) -> None:
-        verb = "Enable" if enabled else "Disable"
-        self._editor.commit(
-            edits.set_enabled(self._editor.committed, [name], enabled), f"{verb} {name}"
-        )
 
     def _on_penalty(self, penalty: float) -> None:
         session = edits.set_penalty(self._editor.committed, penalty)
