@@ -51,11 +51,29 @@ SPECS = (
     ActionSpec("quit", "&Quit", "Ctrl+Q"),
     ActionSpec("undo", "&Undo", "Ctrl+Z", "undo"),
     ActionSpec("redo", "&Redo", "Ctrl+Shift+Z", "redo"),
+    ActionSpec("copy", "&Copy", "Ctrl+C", "", "As a table for a spreadsheet"),
+    ActionSpec("paste", "&Paste", "Ctrl+V", "", "Landmarks from a spreadsheet or CSV text"),
     ActionSpec("rename", "Re&name Landmark", "F2"),
+    ActionSpec(
+        "rename_many", "Rename &Several…", "Ctrl+F2", "", "By a pattern, or find and replace"
+    ),
+    ActionSpec("note", "No&te…", "Shift+F2", "", "Write something down about a landmark"),
+    ActionSpec("toggle_enabled", "&Disable", "Ctrl+D", "", "Let pairs take part, or not"),
+    ActionSpec("toggle_locked", "&Lock", "Ctrl+L", "", "Protect from being moved by accident"),
+    ActionSpec(
+        "toggle_role", "Make &Passenger", "Ctrl+Shift+P", "", "Carried by the warp, not solved for"
+    ),
+    ActionSpec("move_up", "Move Row &Up", "Alt+Up"),
+    ActionSpec("move_down", "Move Row Do&wn", "Alt+Down"),
+    ActionSpec("next_incomplete", "Next &Incomplete Landmark", "N"),
+    ActionSpec("filter", "&Filter Landmarks", "Ctrl+F"),
     ActionSpec("delete_side", "&Delete Position", "Del", "delete", "On the selected side only"),
     ActionSpec("delete_landmark", "Delete &Landmark", "Ctrl+Del", "", "On both sides"),
     ActionSpec("select_none", "Select &None", "Esc"),
     ActionSpec("overlay", "Show &Warped Source", "W", "overlay", "Over the destination", True),
+    ActionSpec(
+        "show_coordinates", "Show &Coordinates", "Ctrl+Shift+C", "", "In the table, to edit", True
+    ),
     ActionSpec("fit", "&Fit Both Views", "Home", "fit", "Look at both bones as a whole"),
     ActionSpec("accept_ghost", "&Accept Ghost", "Space", "", "Place it where it is expected"),
     ActionSpec("snap", "S&nap to Surface", "S", "", "Put the selection back onto the bone"),
