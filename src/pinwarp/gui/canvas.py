@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
-from qtpy.QtCore import QPointF
+from qtpy.QtCore import QPointF, Signal
 from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.landmarks import Side
 from pinwarp.gui import theme
+from pinwarp.gui.camera_pose import Matrix, Pose, best_frame, fitted
 from pinwarp.gui.drawn_mesh import DrawnMesh, OverlayWarp
 from pinwarp.gui.fast_view import FastView
 from pinwarp.gui.marker_layer import MarkerLayer
@@ -32,11 +33,14 @@ SLOW_FRAME = 0.040
 class Canvas(FastView):
     """Draws a scene and the overlay; knows where things are on the screen."""
 
+    orbiting_changed = Signal(bool)
+
     def __init__(self, side: Side, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.side = side
         self.layer = MarkerLayer(self, side.value.capitalize())
         self.surface: Surface | None = None
+        self.is_placing_camera = False
         self._scene: Scene | None = None
         bone = {"color": _COLOURS[side]} | _BONE
         warped = {"color": theme.OVERLAY_COLOUR} | _OVERLAY
@@ -142,6 +146,7 @@ class Canvas(FastView):
         if orbiting != self._orbiting:
             self._orbiting = orbiting
             self._choose_detail()
+            self.orbiting_changed.emit(orbiting)
 
     @property
     def _is_moving(self) -> bool:
@@ -175,23 +180,32 @@ class Canvas(FastView):
 
     # The camera
 
-    def look_at_all(self) -> None:
-        """Fit everything, the longest axis upright and the widest across."""
-        mesh = self.surface.polydata if self.surface is not None else self._overlay.polydata
-        if mesh is None:
+    @property
+    def bone(self) -> pv.PolyData | None:
+        """What the camera is fitted to: this side's mesh, else the overlay, else None."""
+        return self.surface.polydata if self.surface is not None else self._overlay.polydata
+
+    def look_at_all(self, frame: Matrix | None = None) -> None:
+        """Fit everything, the longest axis upright and the widest across, or from a given side."""
+        bone = self.bone
+        if bone is None:
             return
-        size = np.array(mesh.bounds_size)
-        up = int(np.argmax(size))
-        along = min((axis for axis in range(3) if axis != up), key=lambda axis: size[axis])
-        direction, upright = np.zeros(3), np.zeros(3)
-        direction[along], upright[up] = 1.0, 1.0
-        centre = np.array(mesh.center)
-        self.camera.focal_point = centre
-        self.camera.position = centre + direction * float(np.linalg.norm(size)) * 2
-        self.camera.up = upright
-        self.reset_camera(render=False, bounds=mesh.bounds)
-        self.camera.zoom(1.25)
-        self.camera.is_set = True
+        if frame is None:
+            frame = best_frame(bone.bounds_size)
+        # A few thousand vertices tell how large a bone looks.
+        points = np.asarray(bone.points)[:: max(1, bone.n_points // 5000)]
+        aspect = max(1, self.width()) / max(1, self.height())
+        self.set_pose(fitted(points, frame, self.camera.GetViewAngle(), aspect))
+
+    def set_pose(self, pose: Pose) -> None:
+        """Put the camera somewhere; :attr:`is_placing_camera` tells that no hand moves it."""
+        camera, self.is_placing_camera = self.camera, True
+        camera.SetFocalPoint(pose.focal_point)
+        camera.SetPosition(pose.position)
+        camera.SetViewUp(pose.up)
+        camera.SetParallelScale(pose.parallel_scale)
+        camera.is_set = True
+        self.is_placing_camera = False
         self.renderer.ResetCameraClippingRange()
         self.update()
 

@@ -31,6 +31,7 @@ from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
 from pinwarp.gui.penalty_panel import PenaltyPanel
 from pinwarp.gui.presenter import Presenter
 from pinwarp.gui.recent_files import RecentFiles
+from pinwarp.gui.view_controls import ViewControls
 from pinwarp.gui.viewport import Viewport
 from pinwarp.io.samples import sample_session
 from pinwarp.session import edits
@@ -48,6 +49,7 @@ _TOOLBAR = (
     "delete_side",
     None,
     "fit",
+    "link_next",
     "overlay",
 )
 
@@ -77,6 +79,7 @@ class MainWindow(QMainWindow):
         self._recent = RecentFiles(settings)
         self._lay_out()
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
+        self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
         self.documents = Documents(
             self.editor, self.jobs, self._dialogs, self._recent, self.presenter.keep_surface
         )
@@ -142,7 +145,12 @@ class MainWindow(QMainWindow):
             "undo redo - rename delete_side delete_landmark - select_none",
         )
         view = self.menuBar().addMenu("&View")
-        fill(view, "overlay fit -")
+        fill(view, "overlay - fit focus")
+        sides = "view_front view_back - view_left view_right - view_top view_bottom"
+        fill(view.addMenu("&Look From"), sides)
+        cameras = "link_linked link_rotation link_free - link_next"
+        fill(view.addMenu("&Cameras"), cameras)
+        view.addSeparator()
         for dock in self.findChildren(QDockWidget):
             view.addAction(dock.toggleViewAction())
         fill(self.menuBar().addMenu("&Help"), "about_penalty about")
@@ -208,7 +216,6 @@ class MainWindow(QMainWindow):
             "delete_side": self.presenter.delete_side,
             "delete_landmark": self.presenter.delete_landmarks,
             "select_none": editor.select,
-            "fit": self._fit,
             "about": lambda: self._dialogs.tell("About pinwarp", ABOUT),
             "about_penalty": lambda: self._dialogs.tell("About the warping penalty", ABOUT_PENALTY),
         }
@@ -242,10 +249,6 @@ class MainWindow(QMainWindow):
         if names and (row := self.editor.session.index_of(names[0])) is not None:
             self.table.setFocus()
             self.table.edit(self.model.index(row, 0))
-
-    def _fit(self) -> None:
-        for viewport in self.viewports.values():
-            viewport.look_at_all()
 
     def _say(self, text: str) -> None:
         self.statusBar().showMessage(text, 6000)
@@ -353,6 +356,7 @@ class MainWindow(QMainWindow):
         self._settings.setValue("layout", self.saveState())
         self.jobs.shut_down()
         self.presenter.shut_down()
+        self.view_controls.shut_down()
         for signal in (self.editor.session_changed, self.editor.selection_changed):
             signal.disconnect(self._on_session)
         self.editor.view_changed.disconnect(self._on_view)

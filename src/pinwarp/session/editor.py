@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from pathlib import Path
 
 from psygnal import Signal
@@ -20,6 +21,14 @@ class Selection:
     side: Side = Side.SOURCE
 
 
+class LinkMode(StrEnum):
+    """How the cameras of the two sides move together."""
+
+    LINKED = "linked"
+    ROTATION = "rotation only"
+    FREE = "free"
+
+
 @dataclass(frozen=True)
 class ViewState:
     """How the session is looked at: not undone, not part of what is saved."""
@@ -27,6 +36,7 @@ class ViewState:
     overlay: bool = True
     opacity: float = 0.55
     hovered: str | None = None
+    link: LinkMode = LinkMode.LINKED
 
 
 class Editor:
