@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from qtpy.QtCore import QPoint, QPointF, Qt
-from qtpy.QtGui import QWheelEvent
+from qtpy.QtCore import QPoint, QPointF, QRectF, Qt
+from qtpy.QtGui import QColor, QImage, QPainter, QWheelEvent
 from qtpy.QtWidgets import QApplication
 
 from pinwarp.core.alignment import Similarity, fit_similarity
 from pinwarp.core.landmarks import Landmark, Side, as_position, positions
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui.camera_pose import Pose, inverse
+from pinwarp.gui.scale_bar import paint_scale_bar
+from pinwarp.gui.section import Section
 from pinwarp.io.mesh_formats.ply import write_ply
 from pinwarp.io.meshes import read_mesh
 from pinwarp.io.samples import assets_folder
@@ -304,3 +306,118 @@ def test_a_mapped_pose_sees_the_mapped_bone_and_the_way_back_is_exact():
     back = there.mapped(inverse(fit))
     assert np.allclose(back.position, here.position)
     assert np.allclose(back.frame, here.frame)
+
+
+# Scale bar, landmark size, wireframe, cross-section
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_the_scale_bar_is_as_long_as_its_length_looks_at_the_focal_plane(user, parallel):
+    user.open_sample()
+    viewport = user.window.viewports[SOURCE]
+    viewport.camera.SetParallelProjection(parallel)
+    here = pose(user, SOURCE)
+    across = 50.0 * here.frame[:, 0]
+    ends = viewport.project(np.array([here.focal_point, here.focal_point + across]))
+    pixels = float(np.linalg.norm(ends[1] - ends[0]))
+    assert 50.0 / viewport.unit_per_pixel == pytest.approx(pixels, rel=1e-6)
+    assert viewport.layer.unit == "mm"
+
+
+def test_the_scale_bar_is_in_the_corner_in_the_unit_of_the_session(qapp):
+    view = QRectF(0, 0, 400, 300)
+    picture = QImage(400, 300, QImage.Format.Format_RGB32)
+    picture.fill(Qt.GlobalColor.white)
+    painter = QPainter(picture)
+    where = paint_scale_bar(painter, view, 0.5, "cm")
+    painter.end()
+    assert where.width() == pytest.approx(100, abs=2), "50 cm"
+    assert view.contains(where)
+    assert where.right() > 380
+    assert where.bottom() > 280
+    assert picture.pixelColor(int(where.center().x()), int(where.bottom())) != QColor("white")
+
+
+def test_brackets_change_the_size_of_the_landmarks_within_bounds(user):
+    user.open_sample()
+    layer = user.window.viewports[SOURCE].layer
+    assert layer.radius == 6
+    user.press(Qt.Key.Key_BracketRight)
+    assert layer.radius == 7
+    for _ in range(8):
+        user.press(Qt.Key.Key_BracketRight)
+    assert layer.radius == 12
+    assert not user.window.actions_by_key["markers_larger"].isEnabled()
+    for _ in range(10):
+        user.press(Qt.Key.Key_BracketLeft)
+    assert layer.radius == 4
+
+
+def test_shift_w_draws_the_bones_as_edges_and_back(user):
+    user.open_sample()
+    for style in ("Wireframe", "Surface"):
+        user.press(Qt.Key.Key_W, Qt.KeyboardModifier.ShiftModifier)
+        for viewport in user.window.viewports.values():
+            assert viewport._full.actor.prop.style == style
+    assert user.window.viewports[DESTINATION]._overlay.actor.prop.style == "Surface"
+
+
+def test_the_cross_section_lets_a_click_through_to_the_inside(user):
+    user.open_sample_meshes()
+    viewport = user.window.viewports[SOURCE]
+    place = user.places_down_the_bone(SOURCE, 5)[4]
+    at = user.place_of(SOURCE, place)
+    eye = pose(user, SOURCE).frame[:, 2]
+    renders = viewport.renders
+    user.press(Qt.Key.Key_X)
+    assert viewport.renders > renders
+    user.click(SOURCE, at)
+    (landmark,) = user.session.landmarks
+    depths = user.session.mesh(SOURCE).vertices @ eye
+    middle = (depths.min() + depths.max()) / 2
+    assert np.array(place) @ eye > middle
+    assert np.array(landmark.source) @ eye <= middle + 1e-6
+    # The cut stays where it is in the bone when the camera turns.
+    before = viewport._section.plane.GetNormal()
+    orbit(user, SOURCE)
+    assert viewport._section.plane.GetNormal() == before
+    user.press(Qt.Key.Key_X)
+    assert viewport._section is None
+    assert viewport._full.actor.mapper.GetClippingPlanes() is None or (
+        viewport._full.actor.mapper.GetClippingPlanes().GetNumberOfItems() == 0
+    )
+
+
+def test_landmarks_on_the_part_that_is_cut_away_are_faint_and_cannot_be_grabbed(user):
+    user.open_sample_meshes()
+    place = user.places_down_the_bone(SOURCE, 5)[1]
+    user.click_position(SOURCE, place)
+    layer = user.window.viewports[SOURCE].layer
+    assert not layer.hidden()[0]
+    user.press(Qt.Key.Key_X)
+    assert layer.hidden()[0]
+    slider = user.window.view_controls.section_slider
+    user.drag(slider, slider.rect().center(), QPoint(2, slider.height() // 2))
+    assert user.editor.view.section == 0
+    assert not layer.hidden()[0]
+
+
+def test_the_overlay_is_cut_too_and_its_inside_is_drawn(user):
+    user.open_sample()
+    overlay = user.window.viewports[DESTINATION]._overlay
+    assert overlay.actor.prop.culling == "back"
+    user.press(Qt.Key.Key_X)
+    assert overlay.actor.mapper.GetClippingPlanes().GetNumberOfItems() == 1
+    assert overlay.actor.prop.culling == "none"
+    user.press(Qt.Key.Key_X)
+    assert overlay.actor.prop.culling == "back"
+
+
+def test_a_section_clips_towards_the_eye_and_sight_begins_at_the_cut():
+    section = Section([0, 0, 1.0], np.array([[0, 0, 0], [0, 0, 10.0]]))
+    section.move(0.3)
+    assert section.clips([[0, 0, 8.0], [0, 0, 6.0]]).tolist() == [True, False]
+    eye, far = np.array([0, 0, 100.0]), np.array([0, 0, -100.0])
+    assert np.allclose(section.entry(eye, far), [0, 0, 7])
+    assert section.entry(eye, np.array([0, 0, 9.0])) is None
+    assert np.allclose(section.entry(far, eye), far)

@@ -19,6 +19,7 @@ from pinwarp.gui.drawn_mesh import DrawnMesh, OverlayWarp
 from pinwarp.gui.fast_view import FastView
 from pinwarp.gui.marker_layer import MarkerLayer
 from pinwarp.gui.scene import Scene
+from pinwarp.gui.section import Section
 from pinwarp.gui.surface import Surface, shaded
 
 _COLOURS = {Side.SOURCE: theme.SOURCE_COLOUR, Side.DESTINATION: theme.DESTINATION_COLOUR}
@@ -42,6 +43,7 @@ class Canvas(FastView):
         self.surface: Surface | None = None
         self.is_placing_camera = False
         self._scene: Scene | None = None
+        self._section: Section | None = None
         bone = {"color": _COLOURS[side]} | _BONE
         warped = {"color": theme.OVERLAY_COLOUR} | _OVERLAY
         self._full = DrawnMesh(self, "surface", **bone)
@@ -80,6 +82,9 @@ class Canvas(FastView):
             if surface.stand_in is not None:
                 self._coarse.show(shaded(surface.stand_in.vertices, surface.stand_in.faces))
             self.look_at_all()
+        if self._section is not None:
+            # The other bone is cut from the same side, in its own depth.
+            self._cut(self._section.direction, self._section.share)
         self._full_frame_seconds = 0.0
         self._choose_detail()
 
@@ -89,8 +94,15 @@ class Canvas(FastView):
         if scene == before:
             return
         # The sheet repaints by itself: no bone is rendered anew for a label.
+        self.layer.hint, self.layer.unit = scene.hint, scene.unit
+        self.layer.radius = scene.marker_radius
         self.layer.set_markers(scene.markers)
-        self.layer.hint = scene.hint
+        if before is None or scene.wireframe != before.wireframe:
+            for drawn in (self._full, self._coarse):
+                drawn.set_wireframe(scene.wireframe)
+            self.update()
+        if scene.section != (before.section if before is not None else None):
+            self._show_section(scene.section)
         overlay = (scene.overlay_visible, scene.overlay_opacity)
         if before is None or overlay != (before.overlay_visible, before.overlay_opacity):
             self._choose_detail()
@@ -113,6 +125,25 @@ class Canvas(FastView):
         """Show no warped source."""
         self._overlay.remove()
         self._coarse_overlay.remove()
+        self.update()
+
+    def _show_section(self, share: float | None) -> None:
+        """Move the cross-section; when it is switched on it faces the camera."""
+        if share is not None and self._section is not None:
+            self._section.move(share)
+            self.update()
+        else:
+            self._cut(None if share is None else -np.array(self.camera.direction), share or 0.0)
+
+    def _cut(self, direction: NDArray | None, share: float) -> None:
+        self._section = None
+        if direction is not None:
+            points = self.bone.points if self.bone is not None else np.zeros((1, 3))
+            self._section = Section(direction, points)
+            self._section.move(share)
+        plane = self._section.plane if self._section is not None else None
+        for drawn in (self._full, self._coarse, self._overlay, self._coarse_overlay):
+            drawn.set_clip(plane)
         self.update()
 
     @property
@@ -211,7 +242,16 @@ class Canvas(FastView):
 
     def view_key(self) -> tuple[Any, ...]:
         """Return what decides which landmarks are hidden: camera, size and mesh."""
-        return (self.camera.GetMTime(), self.width(), self.height(), id(self.surface))
+        share = self._section.share if self._section is not None else None
+        return (self.camera.GetMTime(), self.width(), self.height(), id(self.surface), share)
+
+    @property
+    def unit_per_pixel(self) -> float:
+        """The length that a logical pixel shows where the camera looks, in mesh units."""
+        camera, height = self.camera, max(1, self.height())
+        if camera.GetParallelProjection():
+            return 2 * camera.GetParallelScale() / height
+        return 2 * camera.GetDistance() * np.tan(np.radians(camera.GetViewAngle()) / 2) / height
 
     def _projection(self) -> NDArray:
         aspect = max(1, self.width()) / max(1, self.height())
@@ -239,7 +279,9 @@ class Canvas(FastView):
         """Return the position on the surface under a place on the screen, None beside it."""
         if self.surface is None:
             return None
-        return self.surface.first_hit(*self._ray(at))
+        near, far = self._ray(at)
+        start = near if self._section is None else self._section.entry(near, far)
+        return self.surface.first_hit(start, far) if start is not None else None
 
     def behind_surface(self, positions: NDArray) -> NDArray[np.bool_]:
         """Return which positions the mesh hides from the camera."""
@@ -250,7 +292,9 @@ class Canvas(FastView):
         if self.camera.parallel_projection:
             eye = eye + np.array(self.camera.direction) * -1e3 * self.surface.diagonal
         for i, position in enumerate(positions):
-            hidden[i] = self.surface.hides(eye, position)
+            # What is clipped away neither hides nor can be grabbed.
+            start = eye if self._section is None else self._section.entry(eye, position)
+            hidden[i] = start is None or self.surface.hides(start, position)
         return hidden
 
     def resizeEvent(self, event: QResizeEvent) -> None:

@@ -80,6 +80,7 @@ class MainWindow(QMainWindow):
         self._lay_out()
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
+        self.view_controls.add_to(self.findChild(QToolBar, "tools"))
         self.documents = Documents(
             self.editor, self.jobs, self._dialogs, self._recent, self.presenter.keep_surface
         )
@@ -149,7 +150,8 @@ class MainWindow(QMainWindow):
         sides = "view_front view_back - view_left view_right - view_top view_bottom"
         fill(view.addMenu("&Look From"), sides)
         cameras = "link_linked link_rotation link_free - link_next"
-        fill(view.addMenu("&Cameras"), cameras)
+        fill(view.addMenu("Ca&meras"), cameras)
+        fill(view, "- section wireframe - markers_larger markers_smaller")
         view.addSeparator()
         for dock in self.findChildren(QDockWidget):
             view.addAction(dock.toggleViewAction())

@@ -33,6 +33,10 @@ class Scene:
     overlay_visible: bool = False
     overlay_opacity: float = 0.5
     hint: str = ""
+    unit: str = ""
+    marker_radius: float = 6.0
+    wireframe: bool = False
+    section: float | None = None
 
 
 _EMPTY_HINTS = {
@@ -76,6 +80,10 @@ def scene_of(
         overlay_visible=side is Side.DESTINATION and view.overlay,
         overlay_opacity=view.opacity,
         hint="" if session.mesh(side) is not None else _EMPTY_HINTS[side],
+        unit=session.unit,
+        marker_radius=view.marker_radius,
+        wireframe=view.wireframe,
+        section=view.section,
     )
 
 

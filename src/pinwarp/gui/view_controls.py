@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from qtpy.QtCore import QObject
+from qtpy.QtCore import QObject, Qt
 from qtpy.QtGui import QAction, QActionGroup
+from qtpy.QtWidgets import QHBoxLayout, QSizePolicy, QSlider, QToolBar, QWidget
 
 from pinwarp.core.alignment import Similarity
 from pinwarp.core.landmarks import Landmark, Side
@@ -30,6 +31,8 @@ LINK_ACTIONS = {
     LinkMode.ROTATION: "link_rotation",
     LinkMode.FREE: "link_free",
 }
+# Smallest and largest landmark, in logical pixels.
+MARKER_RADII = (4.0, 12.0)
 # Share of the bone's diagonal that the height of a view shows after a focus.
 CLOSE_UP = 0.4
 
@@ -62,6 +65,7 @@ class ViewControls(QObject):
         self._actions = actions
         self._fitted_for: tuple[Landmark, ...] | None = None
         self._fit: Similarity | None = None
+        self.section_slider = _section_slider()
         self._surfaces = self._surfaces_now()
         self._pairs = 0
         self.link = CameraLink(views, self.pairing_fit)
@@ -79,12 +83,27 @@ class ViewControls(QObject):
         self._on_trigger("focus", self.focus)
         for view in StandardView:
             self._on_trigger(f"view_{view.value}", lambda view=view: self.look_from(view))
+        actions["wireframe"].toggled.connect(lambda on: editor.look(wireframe=on))
+        actions["section"].toggled.connect(self._on_section)
+        self._on_trigger("markers_larger", lambda: self._resize_markers(1))
+        self._on_trigger("markers_smaller", lambda: self._resize_markers(-1))
+        self.section_slider.valueChanged.connect(self._on_section_moved)
         editor.view_changed.connect(self._on_view)
         editor.session_changed.connect(self._on_session)
 
     def _on_trigger(self, key: str, call: Callable[..., object]) -> None:
         # Qt's "checked" argument is of no use to any of them.
         self._actions[key].triggered.connect(lambda _checked=False: call())
+
+    def add_to(self, bar: QToolBar) -> None:
+        """Put the cross-section and its depth at the end of a toolbar."""
+        bar.addAction(self._actions["section"])
+        holder = QWidget()
+        row = QHBoxLayout(holder)
+        row.setContentsMargins(4, 0, 8, 0)
+        row.addWidget(self.section_slider)
+        holder.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Preferred)
+        bar.addWidget(holder)
 
     def shut_down(self) -> None:
         """Let go of the cameras and the editor."""
@@ -99,6 +118,13 @@ class ViewControls(QObject):
         self.link.set_mode(view.link)
         actions[LINK_ACTIONS[view.link]].setChecked(True)
         actions["link_next"].setIcon(icon(LINK_ACTIONS[view.link]))
+        actions["markers_larger"].setEnabled(view.marker_radius < MARKER_RADII[1])
+        actions["markers_smaller"].setEnabled(view.marker_radius > MARKER_RADII[0])
+        actions["wireframe"].setChecked(view.wireframe)
+        actions["section"].setChecked(view.section is not None)
+        self.section_slider.setEnabled(view.section is not None)
+        if view.section is not None:
+            self.section_slider.setValue(round(view.section * self.section_slider.maximum()))
         actions["link_next"].setToolTip(f"Cameras are {view.link.value} (K changes it)")
 
     def _on_session(self, session: Session) -> None:
@@ -126,6 +152,20 @@ class ViewControls(QObject):
             if not _same(fit, self._fit):
                 self._fit = fit
         return self._fit
+
+    # Looks
+
+    def _resize_markers(self, by: float) -> None:
+        radius = self._editor.view.marker_radius + by
+        self._editor.look(marker_radius=float(np.clip(radius, *MARKER_RADII)))
+
+    def _on_section(self, on: bool) -> None:
+        slider = self.section_slider
+        self._editor.look(section=slider.value() / slider.maximum() if on else None)
+
+    def _on_section_moved(self, value: int) -> None:
+        if self._editor.view.section is not None:
+            self._editor.look(section=value / self.section_slider.maximum())
 
     # Cameras
 
@@ -194,6 +234,16 @@ class ViewControls(QObject):
             there = fit if side is Side.SOURCE else inverse(fit)
             targets[side.other] = there.apply(known)
         return targets
+
+
+def _section_slider() -> QSlider:
+    slider = QSlider(Qt.Orientation.Horizontal)
+    slider.setRange(0, 200)
+    slider.setValue(100)
+    slider.setFixedWidth(110)
+    slider.setAccessibleName("Depth of the cross-section")
+    slider.setToolTip("Depth of the cross-section")
+    return slider
 
 
 def _same(a: Similarity | None, b: Similarity | None) -> bool:

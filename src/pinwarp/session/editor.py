@@ -31,12 +31,23 @@ class LinkMode(StrEnum):
 
 @dataclass(frozen=True)
 class ViewState:
-    """How the session is looked at: not undone, not part of what is saved."""
+    """How the session is looked at: not undone, not part of what is saved.
+
+    Parameters
+    ----------
+    marker_radius
+        Of the landmarks' signs, in logical pixels.
+    section
+        Share of the depth that the cross-section clips away; None without a cross-section.
+    """
 
     overlay: bool = True
     opacity: float = 0.55
     hovered: str | None = None
     link: LinkMode = LinkMode.LINKED
+    marker_radius: float = 6.0
+    wireframe: bool = False
+    section: float | None = None
 
 
 class Editor:
