@@ -37,6 +37,7 @@ from pinwarp.gui.presenter import Presenter
 from pinwarp.gui.recent_files import RecentFiles
 from pinwarp.gui.shortcut_overlay import ShortcutOverlay
 from pinwarp.gui.table_presenter import TablePresenter
+from pinwarp.gui.view_controls import ViewControls
 from pinwarp.gui.viewport import Viewport
 from pinwarp.io.samples import sample_session
 from pinwarp.session.editor import Editor
@@ -68,6 +69,8 @@ class MainWindow(QMainWindow):
         self._recent = RecentFiles(settings)
         self._lay_out()
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
+        self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
+        self.view_controls.add_to(self.findChild(QToolBar, "tools"))
         self.documents = Documents(
             self.editor, self.jobs, self._dialogs, self._recent, self.presenter.keep_surface
         )
@@ -202,7 +205,6 @@ class MainWindow(QMainWindow):
             "export_passengers": documents.export_passengers,
             "shortcuts": self.shortcuts.toggle,
             "select_none": editor.select,
-            "fit": self._fit,
             "about": lambda: self._dialogs.tell("About pinwarp", ABOUT),
             "about_penalty": lambda: self._dialogs.tell("About the warping penalty", ABOUT_PENALTY),
         }
@@ -234,10 +236,6 @@ class MainWindow(QMainWindow):
         """Open the sample bones as a new session, asking about unsaved work first."""
         if self.documents.may_lose_changes():
             self.documents.open_session(sample_session(), as_new=True)
-
-    def _fit(self) -> None:
-        for viewport in self.viewports.values():
-            viewport.look_at_all()
 
     def _say(self, text: str) -> None:
         self.statusBar().showMessage(text, 6000)
@@ -330,6 +328,7 @@ class MainWindow(QMainWindow):
         self.jobs.shut_down()
         self.presenter.shut_down()
         self.table_presenter.shut_down()
+        self.view_controls.shut_down()
         for signal in (self.editor.session_changed, self.editor.selection_changed):
             signal.disconnect(self._on_session)
         self.editor.view_changed.disconnect(self._on_view)

@@ -22,12 +22,20 @@ MENUS = {
     "&Place": (
         "accept_ghost next_incomplete - load_template guide set_pattern - snap set_nudge lock"
     ),
-    "&View": "overlay fit - show_coordinates -",
+    "&View": (
+        "overlay - fit focus @sides @cameras - section wireframe - "
+        "markers_larger markers_smaller - show_coordinates -"
+    ),
     "&Help": "shortcuts - about_penalty about",
 }
 SUBMENUS = {
     "@recent": ("Open &Recent", ""),
     "@import": ("&Import", "import_source import_destination import_pairs"),
+    "@sides": (
+        "&Look From",
+        "view_front view_back - view_left view_right - view_top view_bottom",
+    ),
+    "@cameras": ("Ca&meras", "link_linked link_rotation link_free - link_next"),
     "@export": (
         "E&xport Landmarks",
         "export_source export_destination export_pairs export_passengers",
@@ -35,7 +43,7 @@ SUBMENUS = {
 }
 TOOLBAR = (
     "open_session open_source open_destination save export_mesh - "
-    "undo redo delete_side - lock guide - fit overlay"
+    "undo redo delete_side - lock guide - fit link_next overlay"
 )
 
 

@@ -35,6 +35,10 @@ class Scene:
     overlay_opacity: float = 0.5
     hint: str = ""
     ghost: Ghost | None = None
+    unit: str = ""
+    marker_radius: float = 6.0
+    wireframe: bool = False
+    section: float | None = None
 
 
 _EMPTY_HINTS = {
@@ -82,6 +86,10 @@ def scene_of(
         overlay_opacity=view.opacity,
         ghost=ghost,
         hint="" if session.mesh(side) is not None else _EMPTY_HINTS[side],
+        unit=session.unit,
+        marker_radius=view.marker_radius,
+        wireframe=view.wireframe,
+        section=view.section,
     )
 
 

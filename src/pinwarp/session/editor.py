@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from pathlib import Path
 
 from psygnal import Signal
@@ -19,6 +20,14 @@ class Selection:
 
     names: tuple[str, ...] = ()
     side: Side = Side.SOURCE
+
+
+class LinkMode(StrEnum):
+    """How the cameras of the two sides move together."""
+
+    LINKED = "linked"
+    ROTATION = "rotation only"
+    FREE = "free"
 
 
 @dataclass(frozen=True)
@@ -39,6 +48,14 @@ class ViewState:
         What new landmarks are called.
     nudge
         How far an arrow key moves a landmark, in mesh units; None for a share of the bone.
+    link
+        How the cameras of the two sides move together.
+    marker_radius
+        Of the landmarks' signs, in logical pixels.
+    wireframe
+        Whether the bones are drawn as edges only.
+    section
+        Share of the depth that the cross-section clips away; None without a cross-section.
     """
 
     overlay: bool = True
@@ -48,6 +65,10 @@ class ViewState:
     guided: str | None = None
     name_pattern: str = NAME_PATTERN
     nudge: float | None = None
+    link: LinkMode = LinkMode.LINKED
+    marker_radius: float = 6.0
+    wireframe: bool = False
+    section: float | None = None
 
 
 class Editor:
