@@ -108,6 +108,28 @@ class SourceFactor:
         _, vectors = self.modes
         return self.rotate_back(np.vstack([np.zeros((self.rank + 1, len(vectors))), vectors]))
 
+    def certainty(self, penalties: Matrix) -> tuple[Matrix, Matrix]:
+        """Return ``(lambda_max + s) / (lambda + s)`` of every mode for (k,) penalties.
+
+        Relative to the stiffest mode, so that it has a limit, 1, at an infinite penalty.
+
+        Returns
+        -------
+        certainty : (modes, k)
+            0 for the modes that the solve drops: what duplicate landmarks leave undetermined.
+        noise : (k,)
+            ``s / (lambda_max + s)``.
+        """
+        values, _ = self.modes
+        largest = (float(values[-1]) if len(values) else self.scale) + penalties
+        finite = np.isfinite(largest)
+        noise = np.divide(penalties, largest, out=np.ones_like(largest), where=finite)
+        shifts = values[:, None] + penalties
+        certainty = np.zeros_like(shifts)
+        np.divide(largest, shifts, out=certainty, where=finite & (shifts > self.smallest_mode))
+        certainty[:, ~finite] = 1.0
+        return certainty, noise
+
     @property
     def has_modes(self) -> bool:
         """Whether the eigendecomposition has been computed already."""
