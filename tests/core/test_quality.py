@@ -1,11 +1,10 @@
 from __future__ import annotations
 
-import csv
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.core.femur import femur_landmarks
 from tests.core.strategies import landmark_pairs
 
 from pinwarp.core.quality import bending_energy, leave_one_out, penalty_curve
@@ -168,23 +167,8 @@ def test_bending_energy_is_the_quadratic_form_of_the_data():
 # The real femur
 
 
-def read_side(path):
-    with path.open() as file:
-        return {row[0]: [float(x) for x in row[1:4]] for row in list(csv.reader(file))[1:] if row}
-
-
-@pytest.fixture
-def femur(shared_data):
-    folder = shared_data / "opensim-creator-femur"
-    source = read_side(folder / "femur_r_warp.landmarks.csv")
-    destination = read_side(folder / "subject_femur_r.landmarks.csv")
-    names = sorted(source)
-    millimetres = [1000 * np.array([side[n] for n in names]) for side in (source, destination)]
-    return names, *millimetres
-
-
-def test_the_femur_has_the_documented_figures(femur):
-    names, source, destination = femur
+def test_the_femur_has_the_documented_figures(shared_data):
+    names, source, destination = femur_landmarks(shared_data)
     result = leave_one_out(factorise(source), destination)
     assert result.rms == pytest.approx(11.1, abs=0.05)
     assert names[int(result.distances.argmax())] == "landmark_18"

@@ -133,9 +133,9 @@ def prediction_of(
     sigma = np.sqrt(np.mean(pulls[judged] ** 2 / diagonal[judged, None]))
     columns = factor.rank + 1
     affine = factor.rotate_back(np.eye(len(factor.source), columns))
-    values, vectors = factor.modes
+    _, vectors = factor.modes
     # All is relative to the stiffest mode; at an infinite penalty the modes have no share.
-    share = factor.scale / (float(values[-1]) + penalty)
+    share = factor.scale / (factor.stiffest_mode + penalty)
     weight = share * np.sqrt(certainty)
     return Prediction(
         _sigma=float(sigma),

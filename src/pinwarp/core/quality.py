@@ -113,7 +113,7 @@ def _pulls(
 ) -> tuple[Matrix, Matrix, Matrix]:
     """Return ``G y`` (n, 3, k), the diagonal of G (n, k) and the RMS residual (k,).
 
-    G is taken times ``lambda_max + s``: only ratios matter, and these have a limit at infinity.
+    G is taken times ``stiffest mode + s``: only ratios matter, and these have a limit at infinity.
     """
     modes = factor.modes_at_landmarks
     certainty, noise = factor.certainty(penalties)
@@ -125,7 +125,7 @@ def _pulls(
         left[dropped] = 1.0
         # These modes live on the duplicates: anything elsewhere is rounding, and would be blown up.
         modes = np.where(dropped.any(axis=1) & (np.abs(modes) < 1e-6), 0.0, modes)
-        certainty[dropped] = max(float(factor.modes[0][-1]), factor.scale) / factor.smallest_mode
+        certainty[dropped] = factor.stiffest_mode / factor.smallest_mode
     residual = np.sqrt((left * left).T @ np.sum(parts * parts, axis=1) / len(displacement))
     squares = modes * modes
     diagonal = squares @ certainty
