@@ -136,7 +136,7 @@ class MarkerLayer(QWidget):
             painter.setPen(pen)
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawEllipse(at, 8, 8)
-        draw_label(painter, f"{ghost.name}?  Space accepts", at, self.width())
+        draw_label(painter, f"{ghost.name}?", at, self.width())
 
     def _paint_markers(self, painter: QPainter) -> None:
         places, hidden = self.places(), self.hidden()
