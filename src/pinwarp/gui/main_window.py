@@ -80,7 +80,7 @@ class MainWindow(QMainWindow):
         self._lay_out()
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
-        self.view_controls.add_to(self.findChild(QToolBar, "tools"))
+        self.view_controls.add_to(self.findChild(QToolBar, "tools"), self.statusBar())
         self.documents = Documents(
             self.editor, self.jobs, self._dialogs, self._recent, self.presenter.keep_surface
         )
@@ -146,7 +146,9 @@ class MainWindow(QMainWindow):
             "undo redo - rename delete_side delete_landmark - select_none",
         )
         view = self.menuBar().addMenu("&View")
-        fill(view, "overlay - fit focus")
+        fill(view, "overlay")
+        fill(view.addMenu("&Show Source"), "show_warp show_rigid show_similarity")
+        fill(view, "- fit focus")
         sides = "view_front view_back - view_left view_right - view_top view_bottom"
         fill(view.addMenu("&Look From"), sides)
         cameras = "link_linked link_rotation link_free - link_next"
