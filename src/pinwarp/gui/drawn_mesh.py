@@ -75,12 +75,17 @@ class DrawnMesh:
     ) -> None:
         """Draw a mesh's triangles over other vertices; in place where they are the same."""
         if self.polydata is None or self._faces is not mesh.faces:
-            polydata = triangles(vertices, mesh.faces)
-            polydata.point_data["Normals"] = normals
+            # Copies, since VTK takes arrays as they are and they are written into later: the
+            # solver keeps its own.
+            polydata = triangles(vertices.copy(), mesh.faces)
+            polydata.point_data["Normals"] = normals.copy()
             polydata.point_data.active_normals_name = "Normals"
             self.show(polydata, **look)
             self._faces = mesh.faces
             return
+        if look.get("culling", self._culling) != self._culling:
+            self._culling = look["culling"]
+            self.set_clip(self._clip)
         self.polydata.points[:] = vertices
         self.polydata.point_data["Normals"][:] = normals
         self.polydata.GetPoints().Modified()

@@ -70,7 +70,7 @@ class MainWindow(QMainWindow):
         self._lay_out()
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
-        self.view_controls.add_to(self.findChild(QToolBar, "tools"))
+        self.view_controls.add_to(self.findChild(QToolBar, "tools"), self.statusBar())
         self.documents = Documents(
             self.editor, self.jobs, self._dialogs, self._recent, self.presenter.keep_surface
         )

@@ -23,7 +23,7 @@ MENUS = {
         "accept_ghost next_incomplete - load_template guide set_pattern - snap set_nudge lock"
     ),
     "&View": (
-        "overlay - fit focus @sides @cameras - section wireframe - "
+        "overlay @shown - fit focus @sides @cameras - section wireframe - "
         "markers_larger markers_smaller - show_coordinates -"
     ),
     "&Help": "shortcuts - about_penalty about",
@@ -31,6 +31,7 @@ MENUS = {
 SUBMENUS = {
     "@recent": ("Open &Recent", ""),
     "@import": ("&Import", "import_source import_destination import_pairs"),
+    "@shown": ("&Show Source", "show_warp show_rigid show_similarity"),
     "@sides": (
         "&Look From",
         "view_front view_back - view_left view_right - view_top view_bottom",

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from pinwarp.core.landmarks import Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import PenaltyConvention
+from pinwarp.gui.aligned import as_shown
 from pinwarp.gui.drawn_mesh import OverlayWarp
 from pinwarp.gui.jobs import LatestWins
 from pinwarp.gui.landmark_requests import LandmarkRequests
@@ -22,7 +23,7 @@ from pinwarp.gui.scene import scene_of
 from pinwarp.gui.surface import Surface, shading_normals, triangles
 from pinwarp.gui.viewport import Viewport
 from pinwarp.session import edits
-from pinwarp.session.editor import Editor
+from pinwarp.session.editor import Editor, OverlayKind
 from pinwarp.session.ghost import Ghost, ghost_of
 from pinwarp.session.results import WarpInputs, WarpResult, WarpSolver
 from pinwarp.session.session import Session
@@ -41,6 +42,7 @@ class _Request:
     inputs: WarpInputs
     kind: _Kind
     result: WarpResult | None = None
+    overlay: OverlayKind = OverlayKind.WARP
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +83,7 @@ class Presenter:
         self._surfaces: weakref.WeakKeyDictionary[Mesh, Surface] = weakref.WeakKeyDictionary()
         self.solver = WarpSolver()
         self._warps = LatestWins(self._warp)
-        self._asked: tuple[WarpInputs, bool] | None = None
+        self._asked: tuple[WarpInputs, bool, OverlayKind] | None = None
         self.result: WarpResult | None = None
         self._shown: weakref.WeakKeyDictionary[Mesh, OverlayWarp] = weakref.WeakKeyDictionary()
         self.ghosts: dict[Side, Ghost | None] = dict.fromkeys(Side)
@@ -123,7 +125,9 @@ class Presenter:
         """Whether what is shown follows from the session as it is."""
         if not self._warps.is_idle or self._asked is None:
             return False
-        asked, previewed = self._asked
+        asked, previewed, overlay = self._asked
+        if overlay is not self._editor.view.overlay_kind:
+            return False
         current = WarpInputs.of(self._editor.session, asked.stand_in)
         return asked == current and previewed == self._editor.is_previewing
 
@@ -156,10 +160,12 @@ class Presenter:
         if editor.is_previewing:
             destination.set_warping(True)
         inputs, previewing = self._inputs(), editor.is_previewing
-        if (inputs, previewing) == self._asked:
+        overlay = editor.view.overlay_kind
+        if (inputs, previewing, overlay) == self._asked:
             return
-        self._asked = (inputs, previewing)
-        self._warps.request(_Request(inputs, _Kind.PREVIEW if previewing else _Kind.REST))
+        self._asked = (inputs, previewing, overlay)
+        kind = _Kind.PREVIEW if previewing else _Kind.REST
+        self._warps.request(_Request(inputs, kind, overlay=overlay))
 
     def _inputs(self) -> WarpInputs:
         """Return what the warp depends on, with a stand-in where drawing in full is slow."""
@@ -184,6 +190,8 @@ class Presenter:
                     self.ghosts[side],
                 )
             )
+        if self._asked is not None and self._asked[2] is not editor.view.overlay_kind:
+            self._ask()
 
     def _ghost(self, side: Side) -> Ghost | None:
         """Predict where the next landmark of a side should be, on that side's surface."""
@@ -209,20 +217,25 @@ class Presenter:
             return _Shaded(self.solver.refine(request.result), request.kind)
         inputs = request.inputs
         solve = self.solver.preview if request.kind is _Kind.PREVIEW else self.solver.solve
-        result = solve(inputs)
+        warped = request.overlay is OverlayKind.WARP
+        result = as_shown(solve(inputs), request.overlay)
         return _Shaded(
             result,
             request.kind,
             (
-                self._shade(result, inputs.mesh, result.vertices),
-                self._shade(result, inputs.stand_in, result.stand_in),
+                self._shade(result, inputs.mesh, result.vertices, warped),
+                self._shade(result, inputs.stand_in, result.stand_in, warped),
             ),
         )
 
     def _shade(
-        self, result: WarpResult, mesh: Mesh | None, vertices: NDArray[np.float32] | None
+        self,
+        result: WarpResult,
+        mesh: Mesh | None,
+        vertices: NDArray[np.float32] | None,
+        warped: bool,
     ) -> OverlayWarp | None:
-        if mesh is None or vertices is None or result.spline is None:
+        if mesh is None or vertices is None:
             return None
         shown = self._shown.get(mesh)
         if shown is not None and shown.vertices is vertices:
@@ -230,7 +243,8 @@ class Presenter:
         normals = shading_normals(triangles(vertices, mesh.faces))
         # The warped surface shows its inside when it did so before, or when the warp mirrors it.
         whole = self._surface(result.inputs.mesh)
-        mirrored = bool(np.linalg.det(result.spline.affine[1:]) < 0)
+        affine = result.spline.affine[1:] if warped and result.spline is not None else np.eye(3)
+        mirrored = bool(np.linalg.det(affine) < 0)
         inside_out = (whole is not None and whole.inside_out) != mirrored
         self._shown[mesh] = OverlayWarp(mesh, vertices, normals, inside_out)
         return self._shown[mesh]
