@@ -135,9 +135,13 @@ def icon(name: str) -> QIcon:
     """Return an icon of the project's own, in the colour of the window's text."""
     text = (assets_folder() / "icons" / f"{name}.svg").read_text(encoding="utf-8")
     result = QIcon()
-    normal = theme.text_colour().name()
-    for mode, opacity in ((QIcon.Mode.Normal, 1.0), (QIcon.Mode.Disabled, 0.35)):
-        renderer = QSvgRenderer(QByteArray(text.replace("currentColor", normal).encode()))
+    normal, selected = theme.text_colour().name(), theme.selected_text_colour().name()
+    for mode, colour, opacity in (
+        (QIcon.Mode.Normal, normal, 1.0),
+        (QIcon.Mode.Selected, selected, 1.0),
+        (QIcon.Mode.Disabled, normal, 0.35),
+    ):
+        renderer = QSvgRenderer(QByteArray(text.replace("currentColor", colour).encode()))
         for size in (20, 40, 64):
             pixmap = QPixmap(QSize(size, size))
             pixmap.fill(Qt.GlobalColor.transparent)

@@ -56,6 +56,8 @@ class Column:
         What editing begins with, whether it may, and what Undo calls it.
     side
         Which side of the landmark a click on a cell means.
+    header_icon
+        The name of an icon that says the title in less room.
     is_numeric
         Whether it is written flush right.
     widest
@@ -77,6 +79,7 @@ class Column:
     can_edit: Callable[[Row], bool] = lambda _row: True
     label: str = "Edit {}"
     side: Side | None = None
+    header_icon: str = ""
     is_numeric: bool = False
     widest: str = ""
     on_demand: bool = False
@@ -105,7 +108,8 @@ def number_column(
         title=title,
         tip=tip,
         text=shown,
-        sort_key=lambda row: row.values.get(key),
+        # What is shown as 0 is 0: the noise below sorts nothing.
+        sort_key=lambda row: 0.0 if shown(row) == "0" else row.values.get(key),
         is_numeric=True,
         widest="0.00123",
     )
@@ -142,11 +146,12 @@ def _tick(row: Row) -> bool | None:
 
 
 def _lock_icon(row: Row) -> QIcon:
-    return _icon("lock" if row.landmark.locked else "unlock")
+    return kept_icon("lock" if row.landmark.locked else "unlock")
 
 
 @functools.cache
-def _icon(name: str) -> QIcon:
+def kept_icon(name: str) -> QIcon:
+    """Return an icon that is drawn often."""
     return icon(name)
 
 
@@ -279,6 +284,7 @@ COLUMNS: tuple[Column, ...] = (
         sort_key=lambda row: not row.landmark.locked,
         cell_tip=_lock_tip,
         icon=_lock_icon,
+        header_icon="lock",
     ),
 )
 

@@ -13,7 +13,7 @@ from qtpy.QtWidgets import QWidget
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Landmark, LandmarkState, Position
 from pinwarp.gui import theme
-from pinwarp.gui.landmark_columns import COLUMNS, NAME, Column, Row, column_number
+from pinwarp.gui.landmark_columns import COLUMNS, NAME, Column, Row, column_number, kept_icon
 from pinwarp.session.results import WarpResult
 from pinwarp.session.session import Session
 
@@ -161,10 +161,18 @@ class LandmarkModel(QAbstractTableModel):
         """Return the titles of the columns."""
         if orientation != Qt.Orientation.Horizontal or not 0 <= section < len(COLUMNS):
             return None
-        if role == Qt.ItemDataRole.DisplayRole:
-            return COLUMNS[section].title
-        if role == Qt.ItemDataRole.ToolTipRole:
-            return f"{COLUMNS[section].tip}\nA click sorts; a third one brings back the order"
+        column = COLUMNS[section]
+        match role:
+            case Qt.ItemDataRole.DisplayRole:
+                return "" if column.header_icon else column.title
+            case Qt.ItemDataRole.AccessibleTextRole:
+                return column.title
+            case Qt.ItemDataRole.DecorationRole if column.header_icon:
+                return kept_icon(column.header_icon)
+            case Qt.ItemDataRole.TextAlignmentRole:
+                return _alignment(column)
+            case Qt.ItemDataRole.ToolTipRole:
+                return f"{column.tip}\nA click sorts; a third one brings back the order"
         return None
 
     def flags(self, index: QModelIndex) -> Qt.ItemFlag:

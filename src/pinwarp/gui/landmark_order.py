@@ -9,10 +9,11 @@ from pinwarp.gui.landmark_columns import COLUMNS
 from pinwarp.gui.landmark_model import LandmarkModel
 
 _HALF = (LandmarkState.SOURCE_ONLY, LandmarkState.DESTINATION_ONLY, LandmarkState.EMPTY)
+_SHORTEST = 3
 
 
 def matches(landmark: Landmark, words: list[str]) -> bool:
-    """Whether each word occurs in the name, the note or the state of a landmark.
+    """Whether each word occurs in the name or note of a landmark, or begins its state.
 
     Parameters
     ----------
@@ -23,17 +24,22 @@ def matches(landmark: Landmark, words: list[str]) -> bool:
 
     Examples
     --------
-    >>> matches(Landmark("Fovea", (1, 2, 3)), ["fov"]), matches(Landmark("Fovea"), ["paired"])
-    (True, False)
+    >>> fovea = Landmark("Fovea", (1, 2, 3))
+    >>> matches(fovea, ["vea"]), matches(fovea, ["source", "only"]), matches(fovea, ["paired"])
+    (True, True, False)
     """
-    state = landmark.state
-    text = f"{landmark.name}\n{landmark.note}\n{state.value}"
-    if state in _HALF:
-        text += "\nincomplete"
+    text = f"{landmark.name}\n{landmark.note}".casefold()
+    states = landmark.state.value.split()
+    if landmark.state in _HALF:
+        states.append("incomplete")
     if landmark.locked:
-        text += "\nlocked"
-    text = text.casefold()
-    return all(word in text for word in words)
+        states.append("locked")
+    return all(word in text or _begins(word, states) for word in words)
+
+
+def _begins(word: str, states: list[str]) -> bool:
+    # Shorter ones are on the way to a name, and every pair is "paired".
+    return len(word) >= _SHORTEST and any(state.startswith(word) for state in states)
 
 
 class LandmarkOrder(QSortFilterProxyModel):

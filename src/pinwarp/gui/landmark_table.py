@@ -16,7 +16,7 @@ from qtpy.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QR
 from qtpy.QtWidgets import QAbstractItemView, QHeaderView, QStyle, QTableView, QWidget
 
 from pinwarp.gui import theme
-from pinwarp.gui.cell_editing import CellEditing
+from pinwarp.gui.landmark_cells import LandmarkCells, NameCells
 from pinwarp.gui.landmark_columns import COLUMNS, LOCKED, NAME, column_number
 from pinwarp.gui.landmark_model import LandmarkModel
 from pinwarp.gui.landmark_order import LandmarkOrder
@@ -35,14 +35,19 @@ class LandmarkTable(QTableView):
     selection_requested = Signal(list, object)
     lock_requested = Signal(list, bool)
     toggle_requested = Signal()
+    refused = Signal(str)
 
     def __init__(self, model: LandmarkModel, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._model = model
         self.order = LandmarkOrder(model, self)
         self.setModel(self.order)
-        self.editing = CellEditing(model, self.order, self)
-        self.setItemDelegate(self.editing)
+        self._cells = LandmarkCells(model, self.order, self)
+        self._names = NameCells(model, self.order, self)
+        self.setItemDelegate(self._cells)
+        self.setItemDelegateForColumn(_NAME, self._names)
+        for cells in (self._cells, self._names):
+            cells.refused.connect(self.refused)
         self._rendering = False
         self._fitting = False
         self._set_up_rows()
@@ -61,6 +66,8 @@ class LandmarkTable(QTableView):
         self.setAlternatingRowColors(True)
         self.setShowGrid(False)
         self.setWordWrap(False)
+        # The ends of names tell them apart more often than the middles.
+        self.setTextElideMode(Qt.TextElideMode.ElideMiddle)
         self.setAccessibleName("Landmarks")
         self.verticalHeader().hide()
         self.verticalHeader().setDefaultSectionSize(self.fontMetrics().height() + 9)
@@ -68,7 +75,7 @@ class LandmarkTable(QTableView):
     def _set_up_header(self) -> None:
         header = self.horizontalHeader()
         header.setHighlightSections(False)
-        header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+        header.setMinimumSectionSize(24)
         header.setSectionResizeMode(QHeaderView.ResizeMode.Interactive)
         header.setSortIndicatorClearable(True)
         header.setSortIndicator(-1, Qt.SortOrder.AscendingOrder)
@@ -87,9 +94,11 @@ class LandmarkTable(QTableView):
 
     def show_coordinates(self, shown: bool) -> None:
         """Show or hide the columns that are there on demand."""
+        self._fitting = True
         for number, column in enumerate(COLUMNS):
             if column.on_demand:
                 self.setColumnHidden(number, not shown)
+        self._fitting = False
         self._fit_columns()
 
     def _fit_columns(self) -> None:
@@ -97,11 +106,13 @@ class LandmarkTable(QTableView):
         header = self.horizontalHeader()
         arrow = self.style().pixelMetric(QStyle.PixelMetric.PM_HeaderMarkSize, None, header)
         margin = self.style().pixelMetric(QStyle.PixelMetric.PM_HeaderMargin, None, header)
+        self._fitting = True
         for number, column in enumerate(COLUMNS):
             if number != _NAME and not self.isColumnHidden(number):
-                title = header.fontMetrics().horizontalAdvance(column.title) + arrow + 4 * margin
-                cell = self.fontMetrics().horizontalAdvance(column.widest) + 14
-                header.resizeSection(number, max(title, cell))
+                title = 16 if column.header_icon else _width(header, column.title)
+                cell = _width(self, column.widest) + 12
+                header.resizeSection(number, max(title + arrow + 3 * margin, cell))
+        self._fitting = False
         self._fit_name()
 
     def _fit_name(self) -> None:
@@ -110,9 +121,10 @@ class LandmarkTable(QTableView):
             return
         self._fitting = True
         header = self.horizontalHeader()
-        others = header.length() - header.sectionSize(_NAME)
-        rest = self.viewport().width() - others
-        header.resizeSection(_NAME, max(rest, _LEAST_NAME_WIDTH))
+        others = sum(header.sectionSize(n) for n in range(len(COLUMNS)) if n != _NAME)
+        # A second time, as the first may let a scroll bar come or go.
+        for _ in range(2):
+            header.resizeSection(_NAME, max(self.viewport().width() - others, _LEAST_NAME_WIDTH))
         self._fitting = False
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -238,6 +250,10 @@ class LandmarkTable(QTableView):
         room = self.viewport().rect().adjusted(12, 12, -12, -12)
         painter.drawText(_upper_half(room), Qt.AlignmentFlag.AlignCenter, hint)
         painter.end()
+
+
+def _width(widget: QWidget, text: str) -> int:
+    return int(widget.fontMetrics().horizontalAdvance(text))
 
 
 def _upper_half(room: QRect) -> QRect:

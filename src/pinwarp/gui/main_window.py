@@ -117,7 +117,7 @@ class MainWindow(QMainWindow):
         # The table keeps the whole height of the right edge.
         self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
         self.resizeDocks(
-            [self.findChild(QDockWidget, "landmarks")], [400], Qt.Orientation.Horizontal
+            [self.findChild(QDockWidget, "landmarks")], [430], Qt.Orientation.Horizontal
         )
         self.resizeDocks([penalty], [90], Qt.Orientation.Vertical)
         self._make_menus()

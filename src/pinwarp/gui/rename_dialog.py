@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Sequence
 
-from qtpy.QtCore import Qt
-from qtpy.QtGui import QBrush, QColor
+from qtpy.QtCore import QSize, Qt
+from qtpy.QtGui import QBrush, QColor, QIcon, QPalette
 from qtpy.QtWidgets import (
     QDialog,
     QDialogButtonBox,
@@ -83,7 +83,7 @@ class RenameDialog(QDialog):
         form.addRow("&Pattern", self.pattern)
         form.addRow("&First number", self.first)
         hint = QLabel("{name} is the name as it is, {n} counts, {n:02} with two digits")
-        hint.setEnabled(False)
+        hint.setForegroundRole(QPalette.ColorRole.PlaceholderText)
         hint.setWordWrap(True)
         form.addRow(hint)
         form = QFormLayout(by_text)
@@ -97,12 +97,15 @@ class RenameDialog(QDialog):
         self.preview.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.preview.setHeaderLabels(["Now", "Then"])
         self.preview.header().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        height = self.preview.fontMetrics().height() + 7
         for name in self._names:
-            QTreeWidgetItem(self.preview, [name, name])
+            QTreeWidgetItem(self.preview, [name, name]).setSizeHint(0, QSize(0, height))
         self.problem.setWordWrap(True)
         # Room for a reason of two lines, so that nothing jumps.
         self.problem.setMinimumHeight(2 * self.problem.fontMetrics().lineSpacing())
         self.problem.setAlignment(Qt.AlignmentFlag.AlignTop)
+        for button in self.buttons.buttons():
+            button.setIcon(QIcon())
         self.buttons.button(QDialogButtonBox.StandardButton.Ok).setText("Rename")
         column = QVBoxLayout(self)
         for widget in (self.ways, self.preview, self.problem, self.buttons):

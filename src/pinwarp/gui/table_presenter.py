@@ -69,7 +69,7 @@ class TablePresenter:
         model.reorder_requested.connect(self._on_reorder)
         panel.table.lock_requested.connect(self._set_locked)
         panel.table.toggle_requested.connect(self.toggle_enabled)
-        panel.table.editing.refused.connect(say)
+        panel.table.refused.connect(say)
         does = {
             "rename": self.rename,
             "rename_many": self.rename_many,

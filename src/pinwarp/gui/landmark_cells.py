@@ -1,4 +1,4 @@
-"""Typing into a cell: what cannot stand there is refused in place, with the reason."""
+"""Cells of the landmark table: what cannot stand in one is refused in place, with the reason."""
 
 from __future__ import annotations
 
@@ -10,10 +10,18 @@ from qtpy.QtCore import (
     QPersistentModelIndex,
     QPoint,
     QRect,
+    QSize,
     Qt,
     Signal,
 )
-from qtpy.QtWidgets import QLineEdit, QStyledItemDelegate, QStyleOptionViewItem, QToolTip, QWidget
+from qtpy.QtWidgets import (
+    QLineEdit,
+    QStyle,
+    QStyledItemDelegate,
+    QStyleOptionViewItem,
+    QToolTip,
+    QWidget,
+)
 
 from pinwarp.gui import theme
 from pinwarp.gui.landmark_model import LandmarkModel
@@ -23,7 +31,7 @@ _KEYS = (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Tab, Qt.Key.Key_Backtab
 _LONGEST_MS = 8000
 
 
-class CellEditing(QStyledItemDelegate):
+class LandmarkCells(QStyledItemDelegate):
     """The editor of a cell stays open until what it says is accepted, or Esc."""
 
     refused = Signal(str)
@@ -75,3 +83,18 @@ class CellEditing(QStyledItemDelegate):
         if line.styleSheet():
             line.setStyleSheet("")
             QToolTip.hideText()
+
+
+class NameCells(LandmarkCells):
+    """Names that begin at one edge, whether there is a tick before them or not."""
+
+    def initStyleOption(self, option: QStyleOptionViewItem, index: QModelIndex) -> None:
+        """Keep the room of a tick free where there is none."""
+        super().initStyleOption(option, index)
+        if not option.features & QStyleOptionViewItem.ViewItemFeature.HasCheckIndicator:
+            style = option.widget.style()
+            tick = style.pixelMetric(QStyle.PixelMetric.PM_IndicatorWidth, option, option.widget)
+            margin = style.pixelMetric(QStyle.PixelMetric.PM_FocusFrameHMargin) + 1
+            width = option.decorationSize.width() + tick + 2 * margin
+            option.decorationSize = QSize(width, option.decorationSize.height())
+            option.decorationAlignment = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
