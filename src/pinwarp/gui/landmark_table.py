@@ -226,6 +226,13 @@ class LandmarkTable(QTableView):
         else:
             super().mouseDoubleClickEvent(event)
 
+    def event(self, event: QEvent) -> bool:
+        """Claim Space, which accepts the ghost everywhere else in the window."""
+        if event.type() == QEvent.Type.ShortcutOverride and event.key() == Qt.Key.Key_Space:
+            event.accept()
+            return True
+        return super().event(event)
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Space turns the ticks of all selected rows, not only of the current one."""
         if event.key() == Qt.Key.Key_Space and not event.modifiers():
