@@ -33,6 +33,7 @@ def landmarks(name: st.SearchStrategy[str]) -> st.SearchStrategy[Landmark]:
         role=st.sampled_from(Role),
         enabled=st.booleans(),
         note=texts,
+        locked=st.booleans(),
     )
 
 

@@ -395,3 +395,24 @@ def test_a_penalty_that_is_none_is_not_written(tmp_path: Path, penalty: float) -
     with pytest.raises(PenaltyError):
         write_session(tmp_path / "a.csv", SessionRecord(warping_penalty=penalty))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_locks_are_a_column_only_where_some_landmark_is_locked(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    free, locked = Landmark("a"), Landmark("b", locked=True, extra=(("colour", "red"),))
+    write_session(path, SessionRecord((free,)))
+    assert "locked" not in path.read_text()
+    write_session(path, SessionRecord((free, locked)))
+    assert path.read_text().splitlines()[-3].endswith(",note,locked,colour")
+    assert read_session(path).landmarks == (replace(free, extra=(("colour", ""),)), locked)
+
+
+def test_an_empty_lock_is_open_and_nonsense_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    write_session(path, SessionRecord((Landmark("a", locked=True),)))
+    text = path.read_text()
+    path.write_text(text.replace(",,1\n", ",,\n"))
+    assert not read_session(path).landmarks[0].locked
+    path.write_text(text.replace(",,1\n", ",,maybe\n"))
+    with pytest.raises(FileFormatError, match="'locked' is 'maybe' and not 1 or 0"):
+        read_session(path)

@@ -87,6 +87,46 @@ def test_a_landmark_that_is_not_there_is_said_so():
         edits.move(Session(), "x", SOURCE, (0, 0, 0))
 
 
+# Several at once
+
+
+def test_a_passenger_keeps_its_destination_for_the_way_back():
+    session = Session(landmarks=(pair("a"), pair("b")))
+    carried = edits.set_role(session, ["a"], Role.PASSENGER)
+    assert carried.landmark("a").state is LandmarkState.PASSENGER
+    assert [x.name for x in carried.pairs] == ["b"]
+    assert edits.set_role(carried, ["a"], Role.PAIR) == session
+
+
+@pytest.mark.parametrize(
+    ("moving", "row", "expected"),
+    [
+        ("c", 0, "cabde"),
+        ("ad", 2, "badce"),
+        ("a", 5, "bcdea"),
+        ("ab", 1, "abcde"),
+        ("", 3, "abcde"),
+    ],
+)
+def test_reordering_keeps_the_order_of_what_moves_and_of_what_stays(moving, row, expected):
+    session = Session(landmarks=tuple(map(pair, "abcde")))
+    moved = edits.reorder(session, list(moving), row)
+    assert "".join(x.name for x in moved.landmarks) == expected
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        lambda session: edits.set_locked(session, ["a", "x"], True),
+        lambda session: edits.set_role(session, ["x"], Role.PAIR),
+        lambda session: edits.reorder(session, ["x"], 0),
+    ],
+)
+def test_all_of_several_landmarks_must_be_there(edit):
+    with pytest.raises(LandmarkError, match="no landmark called x"):
+        edit(Session(landmarks=(pair("a"),)))
+
+
 # Importing
 
 
@@ -275,6 +315,10 @@ class EditingMachine(RuleBasedStateMachine):
     def some(self, data):
         return data.draw(st.sampled_from([x.name for x in self.editor.session.landmarks]))
 
+    def several(self, data):
+        found = st.sampled_from([x.name for x in self.editor.session.landmarks])
+        return data.draw(st.lists(found, unique=True))
+
     has_landmarks = precondition(lambda self: self.editor.session.landmarks)
 
     @rule(side=sides, position=coordinates)
@@ -308,7 +352,30 @@ class EditingMachine(RuleBasedStateMachine):
     @has_landmarks
     @rule(data=st.data(), enabled=st.booleans())
     def enable(self, data, enabled):
-        self.commit(edits.set_enabled(self.editor.session, self.some(data), enabled), "enable")
+        self.commit(edits.set_enabled(self.editor.session, self.several(data), enabled), "enable")
+
+    @has_landmarks
+    @rule(data=st.data(), locked=st.booleans())
+    def lock(self, data, locked):
+        self.commit(edits.set_locked(self.editor.session, self.several(data), locked), "lock")
+
+    @has_landmarks
+    @rule(data=st.data(), role=st.sampled_from(Role))
+    def give_role(self, data, role):
+        self.commit(edits.set_role(self.editor.session, self.several(data), role), "role")
+
+    @has_landmarks
+    @rule(data=st.data(), note=st.text(st.characters(exclude_categories=["C"])))
+    def write_note(self, data, note):
+        self.commit(edits.set_note(self.editor.session, self.some(data), note), "note")
+
+    @has_landmarks
+    @rule(data=st.data())
+    def reorder(self, data):
+        before = self.editor.session
+        row = data.draw(st.integers(0, len(before.landmarks)))
+        self.commit(edits.reorder(before, self.several(data), row), "reorder")
+        assert set(self.editor.session.landmarks) == set(before.landmarks)
 
     @rule(penalty=st.one_of(st.floats(0, 1e6), st.just(math.inf)))
     def penalise(self, penalty):

@@ -86,6 +86,7 @@ class SourceFactor:
     reflectors: Matrix
     triangle: Matrix
     upper: Matrix
+    corner: Matrix
     coupling: Matrix
     bending: Matrix
     well_spaced: bool
@@ -100,6 +101,12 @@ class SourceFactor:
         """Eigenvalues of ``N`` in mesh units (ascending) and its eigenvectors as columns."""
         values, vectors = np.linalg.eigh(self.bending)
         return values * self.scale, vectors
+
+    @cached_property
+    def modes_at_landmarks(self) -> Matrix:
+        """What each mode is at the landmarks: ``Q2 Z`` (n, modes), orthonormal columns."""
+        _, vectors = self.modes
+        return self.rotate_back(np.vstack([np.zeros((self.rank + 1, len(vectors))), vectors]))
 
     @property
     def has_modes(self) -> bool:
@@ -246,6 +253,7 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
         reflectors=reflectors,
         triangle=triangle,
         upper=np.triu(packed[:columns, :columns]),
+        corner=projected[:columns, :columns].copy(),
         coupling=projected[:columns, columns:].copy(),
         bending=projected[columns:, columns:].copy(),
         well_spaced=well_spaced,
@@ -274,6 +282,17 @@ def _spacing(
         if pair not in duplicates
     )
     return findings, duplicates, False
+
+
+def affine_coordinates(factor: SourceFactor, points: Matrix) -> Matrix:
+    """Return ``R^-T p_v`` for (m, 3) points as (m, r + 1), ``p_v`` their row of ``P``.
+
+    Its square length is the leverage of the affine fit at the point.
+    """
+    spanned = (points - factor.centre) @ (factor.directions.T / factor.scale)
+    rows = np.column_stack([np.ones(len(points)), spanned])
+    solved = solve_triangular(factor.upper, rows.T, trans=1, check_finite=False)
+    return np.asarray(solved.T)
 
 
 def solve_upper(factor: SourceFactor, values: Matrix) -> Matrix:

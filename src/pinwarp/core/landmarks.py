@@ -63,6 +63,8 @@ class Landmark:
         Free text.
     extra
         Columns of a session file that this version does not know, kept as they came.
+    locked
+        A locked landmark is not moved by accident: the mouse and the arrow keys leave it alone.
 
     Raises
     ------
@@ -85,6 +87,7 @@ class Landmark:
     enabled: bool = True
     note: str = ""
     extra: tuple[tuple[str, str], ...] = ()
+    locked: bool = False
 
     def __post_init__(self) -> None:
         if not self.name.strip():

@@ -57,6 +57,17 @@ SPECS = (
     ActionSpec("select_none", "Select &None", "Esc"),
     ActionSpec("overlay", "Show &Warped Source", "W", "overlay", "Over the destination", True),
     ActionSpec("fit", "&Fit Both Views", "Home", "fit", "Look at both bones as a whole"),
+    ActionSpec("accept_ghost", "&Accept Ghost", "Space", "", "Place it where it is expected"),
+    ActionSpec("snap", "S&nap to Surface", "S", "", "Put the selection back onto the bone"),
+    ActionSpec("lock", "&Lock Landmarks", "L", "lock", "Freeze all landmarks", True),
+    ActionSpec("set_nudge", "Nudge Ste&p…", "", "", "How far an arrow key moves a landmark"),
+    ActionSpec("set_pattern", "Name Pa&ttern…", "", "", "What new landmarks are called"),
+    ActionSpec(
+        "load_template", "Load &Template…", "Ctrl+T", "", "A list of landmarks to be asked for"
+    ),
+    ActionSpec("guide", "&Guide", "G", "guide", "Ask for one landmark after the other", True),
+    ActionSpec("export_passengers", "Warped &Passengers…", "", "", "Where the warp carries them"),
+    ActionSpec("shortcuts", "&Shortcuts", "F1", "", "All keys and mouse gestures"),
     ActionSpec("focus", "F&ocus on Selection", "F", "", "Look at the selected landmarks closely"),
     ActionSpec("view_front", "&Front", "1", "", "The side that Fit shows"),
     ActionSpec("view_back", "&Back", "2"),
@@ -98,6 +109,7 @@ def make_actions(parent: QObject) -> dict[str, QAction]:
     # A second habit for the same thing.
     actions["redo"].setShortcuts([QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")])
     actions["delete_side"].setShortcuts([QKeySequence("Del"), QKeySequence("Backspace")])
+    actions["shortcuts"].setShortcuts([QKeySequence("F1"), QKeySequence("?")])
     return actions
 
 

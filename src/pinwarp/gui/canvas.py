@@ -103,6 +103,7 @@ class Canvas(FastView):
             self.update()
         if scene.section != (before.section if before is not None else None):
             self._show_section(scene.section)
+        self.layer.ghost = scene.ghost
         overlay = (scene.overlay_visible, scene.overlay_opacity)
         if before is None or overlay != (before.overlay_visible, before.overlay_opacity):
             self._choose_detail()
@@ -282,6 +283,27 @@ class Canvas(FastView):
         near, far = self._ray(at)
         start = near if self._section is None else self._section.entry(near, far)
         return self.surface.first_hit(start, far) if start is not None else None
+
+    def in_view_plane(self, at: QPointF, through: NDArray) -> NDArray:
+        """Return the position under a place on the screen, as deep in the view as another one."""
+        near, far = self._ray(at)
+        along = np.array(self.camera.direction)
+        towards = far - near
+        return near + towards * float((through - near) @ along / (towards @ along))
+
+    def view_axes(self) -> tuple[NDArray, NDArray]:
+        """Return the unit vectors that point right and up on the screen."""
+        along, up = np.array(self.camera.direction), np.array(self.camera.up)
+        right = np.cross(along, up)
+        right /= np.linalg.norm(right)
+        return right, np.cross(right, along)
+
+    def pixels_per_unit(self, position: NDArray) -> float:
+        """Return how many logical pixels a mesh unit takes at a position."""
+        right, _ = self.view_axes()
+        size = self.surface.diagonal * 0.01 if self.surface is not None else 1.0
+        a, b = self.project(np.array([position, position + right * size]))
+        return float(np.linalg.norm(b - a)) / size
 
     def behind_surface(self, positions: NDArray) -> NDArray[np.bool_]:
         """Return which positions the mesh hides from the camera."""

@@ -18,23 +18,27 @@ from qtpy.QtWidgets import (
     QSlider,
     QSplitter,
     QToolBar,
+    QVBoxLayout,
     QWidget,
 )
 
 from pinwarp.core.landmarks import Side
+from pinwarp.gui import menus
 from pinwarp.gui.actions import icon, make_actions
 from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Documents
+from pinwarp.gui.guidance import Guidance
+from pinwarp.gui.guide_bar import GuideBar
 from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY
 from pinwarp.gui.jobs import SlowJob
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
 from pinwarp.gui.penalty_panel import PenaltyPanel
 from pinwarp.gui.presenter import Presenter
 from pinwarp.gui.recent_files import RecentFiles
+from pinwarp.gui.shortcut_overlay import ShortcutOverlay
 from pinwarp.gui.view_controls import ViewControls
 from pinwarp.gui.viewport import Viewport
 from pinwarp.io.samples import sample_session
-from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 
 _TOOLBAR = (
@@ -47,6 +51,9 @@ _TOOLBAR = (
     "undo",
     "redo",
     "delete_side",
+    None,
+    "lock",
+    "guide",
     None,
     "fit",
     "link_next",
@@ -84,6 +91,9 @@ class MainWindow(QMainWindow):
         self.documents = Documents(
             self.editor, self.jobs, self._dialogs, self._recent, self.presenter.keep_surface
         )
+        self.guidance = Guidance(
+            self.editor, self.presenter, self.documents, self._dialogs, self.guide_bar, self.hint
+        )
         self._connect()
         self._restore_layout()
         self._on_session()
@@ -99,7 +109,14 @@ class MainWindow(QMainWindow):
             splitter.addWidget(self.viewports[side])
             splitter.setStretchFactor(splitter.count() - 1, 1)
         splitter.setSizes([1000, 1000])
-        self.setCentralWidget(splitter)
+        self.guide_bar = GuideBar()
+        centre = QWidget()
+        column = QVBoxLayout(centre)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self.guide_bar)
+        column.addWidget(splitter, 1)
+        self.setCentralWidget(centre)
         self._add_dock("landmarks", "Landmarks", self.table, Qt.DockWidgetArea.RightDockWidgetArea)
         penalty = self._add_dock(
             "penalty", "Warping penalty", self.panel, Qt.DockWidgetArea.BottomDockWidgetArea
@@ -125,39 +142,37 @@ class MainWindow(QMainWindow):
 
     def _make_menus(self) -> None:
         actions = self.actions_by_key
+        # Kept: Python must not let go of a menu that Qt still shows.
+        self._menus = [
+            self.menuBar().addMenu(title) for title in ("&File", "&Edit", "&View", "&Help")
+        ]
+        file, edit, view, about = self._menus
 
         def fill(menu: QMenu, keys: str) -> None:
-            for key in keys.split():
-                if key == "-":
-                    menu.addSeparator()
-                else:
-                    menu.addAction(actions[key])
+            menus.fill(menu, actions, keys)
 
-        file = self.menuBar().addMenu("&File")
         fill(file, "open_source open_destination - open_session")
         self._recent_menu = file.addMenu("Open &Recent")
         self._recent_menu.aboutToShow.connect(self._fill_recent)
         fill(file, "open_sample - save save_as -")
         fill(file.addMenu("&Import"), "import_source import_destination import_pairs")
-        fill(file.addMenu("E&xport Landmarks"), "export_source export_destination export_pairs")
+        fill(
+            file.addMenu("E&xport Landmarks"),
+            "export_source export_destination export_pairs export_passengers",
+        )
         fill(file, "export_mesh - quit")
         fill(
-            self.menuBar().addMenu("&Edit"),
-            "undo redo - rename delete_side delete_landmark - select_none",
+            edit,
+            "undo redo - rename delete_side delete_landmark - accept_ghost snap lock set_nudge - "
+            "load_template guide set_pattern - select_none",
         )
-        view = self.menuBar().addMenu("&View")
-        fill(view, "overlay")
-        fill(view.addMenu("&Show Source"), "show_warp show_rigid show_similarity")
-        fill(view, "- fit focus")
-        sides = "view_front view_back - view_left view_right - view_top view_bottom"
-        fill(view.addMenu("&Look From"), sides)
-        cameras = "link_linked link_rotation link_free - link_next"
-        fill(view.addMenu("Ca&meras"), cameras)
-        fill(view, "- section wireframe - markers_larger markers_smaller")
-        view.addSeparator()
+        menus.fill_view(view, actions)
         for dock in self.findChildren(QDockWidget):
             view.addAction(dock.toggleViewAction())
-        fill(self.menuBar().addMenu("&Help"), "about_penalty about")
+        fill(about, "shortcuts - about_penalty about")
+        self.shortcuts = ShortcutOverlay(
+            self, [(menu.title().replace("&", ""), menus.actions_of(menu)) for menu in self._menus]
+        )
 
     def _make_toolbar(self) -> None:
         bar = QToolBar("Tools", self)
@@ -217,8 +232,15 @@ class MainWindow(QMainWindow):
             "undo": editor.undo,
             "redo": editor.redo,
             "rename": self._rename,
-            "delete_side": self.presenter.delete_side,
-            "delete_landmark": self.presenter.delete_landmarks,
+            "delete_side": self.presenter.requests.delete_side,
+            "delete_landmark": self.presenter.requests.delete_landmarks,
+            "accept_ghost": self.presenter.requests.accept_ghost,
+            "snap": self.presenter.requests.snap,
+            "set_nudge": self.guidance.ask_nudge,
+            "set_pattern": self.guidance.ask_pattern,
+            "load_template": self.guidance.load_template,
+            "export_passengers": documents.export_passengers,
+            "shortcuts": self.shortcuts.toggle,
             "select_none": editor.select,
             "about": lambda: self._dialogs.tell("About pinwarp", ABOUT),
             "about_penalty": lambda: self._dialogs.tell("About the warping penalty", ABOUT_PENALTY),
@@ -227,6 +249,10 @@ class MainWindow(QMainWindow):
             # Qt's "checked" argument is of no use to any of them.
             actions[key].triggered.connect(lambda _checked=False, call=function: call())
         actions["overlay"].toggled.connect(lambda on: editor.look(overlay=on))
+        actions["lock"].toggled.connect(lambda on: editor.look(locked=on))
+        actions["guide"].toggled.connect(self.guidance.switch)
+        self.presenter.requests.refused.connect(self._say)
+        self.guidance.said.connect(self._say)
         self.opacity.valueChanged.connect(lambda value: editor.look(opacity=value / 100))
         for side, viewport in self.viewports.items():
             viewport.files_dropped.connect(
@@ -295,32 +321,16 @@ class MainWindow(QMainWindow):
         actions["export_mesh"].setEnabled(
             session.mesh(Side.SOURCE) is not None and bool(session.pairs)
         )
-        self._on_hint()
+        self.guidance.show()
 
     def _on_view(self, _changed: object = None) -> None:
         view = self.editor.view
         self.actions_by_key["overlay"].setChecked(view.overlay)
+        self.actions_by_key["lock"].setChecked(view.locked)
+        self.actions_by_key["guide"].setChecked(view.guided is not None)
         self.opacity.setEnabled(view.overlay)
         self.opacity.setValue(round(view.opacity * 100))
-        self._on_hint()
-
-    def _on_hint(self) -> None:
-        """Say what a click would do right now."""
-        editor, session = self.editor, self.editor.session
-        if editor.view.hovered is not None:
-            landmark = session.landmark(editor.view.hovered)
-            state = f": {landmark.state.value}" if landmark is not None else ""
-            self.hint.setText(f"{editor.view.hovered}{state} – click selects, drag moves it")
-            return
-        missing = [side for side in Side if session.mesh(side) is None]
-        if missing:
-            self.hint.setText(f"Open the {missing[0].value} mesh to begin, or drop it on its view.")
-            return
-        targets = [
-            f"on the {side.value} places {edits.next_to_place(session, side) or 'a new landmark'}"
-            for side in Side
-        ]
-        self.hint.setText(f"A click {targets[0]}, {targets[1]}. Drag to orbit.")
+        self.guidance.show()
 
     # Slow jobs
 

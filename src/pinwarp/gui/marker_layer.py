@@ -18,6 +18,7 @@ from pinwarp.gui import theme
 from pinwarp.gui.marker_painting import RADIUS, draw_label, extent, marker_pixmap
 from pinwarp.gui.scale_bar import paint_scale_bar
 from pinwarp.gui.scene import Marker
+from pinwarp.session.ghost import Ghost
 
 if TYPE_CHECKING:
     from pinwarp.gui.canvas import Canvas
@@ -32,6 +33,7 @@ class MarkerLayer(QWidget):
         self._title = title
         self.caption = ""
         self.hint = ""
+        self.ghost: Ghost | None = None
         self.unit = ""
         self.radius = RADIUS
         self._markers: tuple[Marker, ...] = ()
@@ -86,6 +88,8 @@ class MarkerLayer(QWidget):
             paint_scale_bar(painter, QRectF(self.rect()), length, self.unit)
         if self.hint:
             self._paint_hint(painter)
+        if self.ghost is not None:
+            self._paint_ghost(painter, self.ghost)
         self._paint_markers(painter)
         painter.end()
 
@@ -113,6 +117,27 @@ class MarkerLayer(QWidget):
         painter.setPen(QColor(theme.INK))
         painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, self.hint)
 
+    def _paint_ghost(self, painter: QPainter, ghost: Ghost) -> None:
+        """Paint a dashed ring where a landmark is expected, in a disc as wide as the doubt."""
+        position = np.array(ghost.position)
+        ((x, y),) = self._canvas.project(position[None])
+        at = QPointF(x, y)
+        colour = QColor(theme.GHOST_COLOUR)
+        if ghost.deviation is not None:
+            radius = ghost.deviation * self._canvas.pixels_per_unit(position)
+            colour.setAlphaF(0.22)
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(colour)
+            painter.drawEllipse(at, radius, radius)
+        for pen in (
+            QPen(QColor(theme.PAPER), 3.5),
+            QPen(QColor(theme.GHOST_COLOUR), 2, Qt.PenStyle.DotLine),
+        ):
+            painter.setPen(pen)
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawEllipse(at, 8, 8)
+        draw_label(painter, f"{ghost.name}?  Space accepts", at, self.width())
+
     def _paint_markers(self, painter: QPainter) -> None:
         places, hidden = self.places(), self.hidden()
         ratio = self.devicePixelRatioF()
@@ -131,5 +156,6 @@ class MarkerLayer(QWidget):
         for i in order:
             if self._markers[i].labelled:
                 painter.setOpacity(0.5 if hidden[i] else 1.0)
-                draw_label(painter, self._markers[i].name, QPointF(*places[i]), self.radius)
+                at = QPointF(*places[i])
+                draw_label(painter, self._markers[i].name, at, self.width(), self.radius)
         painter.setOpacity(1.0)

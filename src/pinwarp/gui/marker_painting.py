@@ -73,8 +73,13 @@ def state_icon(state: LandmarkState) -> QIcon:
     return QIcon(marker_pixmap(state, selected=False, hidden=False, ratio=2.0))
 
 
-def draw_label(painter: QPainter, text: str, at: QPointF, radius: float = RADIUS) -> QRectF:
-    """Write a label beside a point, on a paper plate so that it reads on any bone."""
+def draw_label(
+    painter: QPainter, text: str, at: QPointF, room: float, radius: float = RADIUS
+) -> QRectF:
+    """Write a label beside a point, on a paper plate so that it reads on any bone.
+
+    It stands on the right, or on the left where that would leave the room (the picture's width).
+    """
     metrics = painter.fontMetrics()
     plate = QRectF(
         at.x() + radius + 7,
@@ -82,6 +87,8 @@ def draw_label(painter: QPainter, text: str, at: QPointF, radius: float = RADIUS
         metrics.horizontalAdvance(text) + 12,
         metrics.height() + 4,
     )
+    if plate.right() > room - 2:
+        plate.moveRight(at.x() - radius - 7)
     paper = QColor(theme.PAPER)
     paper.setAlphaF(0.88)
     painter.setPen(QPen(QColor(0, 0, 0, 40), 1))

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import weakref
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum, auto
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import PenaltyConvention
 from pinwarp.gui.aligned import as_shown
 from pinwarp.gui.drawn_mesh import OverlayWarp
 from pinwarp.gui.jobs import LatestWins
+from pinwarp.gui.landmark_requests import LandmarkRequests
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
 from pinwarp.gui.penalty_panel import PenaltyPanel
 from pinwarp.gui.scene import scene_of
@@ -24,6 +24,7 @@ from pinwarp.gui.surface import Surface, shading_normals, triangles
 from pinwarp.gui.viewport import Viewport
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor, OverlayKind
+from pinwarp.session.ghost import Ghost, ghost_of
 from pinwarp.session.results import WarpInputs, WarpResult, WarpSolver
 from pinwarp.session.session import Session
 
@@ -85,6 +86,10 @@ class Presenter:
         self._asked: tuple[WarpInputs, bool, OverlayKind] | None = None
         self.result: WarpResult | None = None
         self._shown: weakref.WeakKeyDictionary[Mesh, OverlayWarp] = weakref.WeakKeyDictionary()
+        self.ghosts: dict[Side, Ghost | None] = dict.fromkeys(Side)
+        self._known_ghosts: dict[Side, Ghost | None] = {}
+        self._ghost_keys: dict[Side, object] = {}
+        self.requests = LandmarkRequests(editor, viewports, self.ghosts.get)
         self._connect()
         self._on_session(editor.session)
 
@@ -95,10 +100,8 @@ class Presenter:
         editor.view_changed.connect(self._on_looks)
         self._warps.computed.connect(self._on_warp)
         self._warps.failed.connect(self._on_failure)
-        for side, viewport in self._viewports.items():
-            self._connect_viewport(side, viewport)
-        self._model.rename_requested.connect(self._on_rename)
-        self._model.enable_requested.connect(self._on_enable)
+        self._model.rename_requested.connect(self.requests.rename)
+        self._model.enable_requested.connect(self.requests.enable)
         self._table.selection_requested.connect(
             lambda names, side: editor.select(*names, side=Side(side) if side else None)
         )
@@ -111,18 +114,6 @@ class Presenter:
         panel.unit_requested.connect(
             lambda unit: editor.commit(edits.set_unit(editor.committed, unit), "Change unit")
         )
-
-    def _connect_viewport(self, side: Side, viewport: Viewport) -> None:
-        editor = self._editor
-        viewport.surface_clicked.connect(lambda position: self._on_place(side, position))
-        viewport.background_clicked.connect(editor.select)
-        viewport.landmark_clicked.connect(lambda name: editor.select(name, side=side))
-        viewport.landmark_dragged.connect(
-            lambda name, position: self._on_drag(name, side, position)
-        )
-        viewport.landmark_dropped.connect(lambda name: self._on_drop(name, side))
-        viewport.drag_cancelled.connect(editor.cancel_preview)
-        viewport.hovered.connect(lambda name: editor.look(hovered=name))
 
     def shut_down(self) -> None:
         """Stop the worker and let go of the editor."""
@@ -190,11 +181,37 @@ class Presenter:
         editor = self._editor
         self._table.show_selection(editor.selection)
         for side, viewport in self._viewports.items():
+            self.ghosts[side] = self._ghost(side)
             viewport.show_scene(
-                scene_of(side, editor.session, editor.selection, editor.view, self.result)
+                scene_of(
+                    side,
+                    editor.session,
+                    editor.selection,
+                    editor.view,
+                    self.result,
+                    self.ghosts[side],
+                )
             )
         if self._asked is not None and self._asked[2] is not editor.view.overlay_kind:
             self._ask()
+
+    def _ghost(self, side: Side) -> Ghost | None:
+        """Predict where the next landmark of a side should be, on that side's surface."""
+        editor, result = self._editor, self.result
+        surface = self._surface(editor.session.mesh(side))
+        if surface is None or result is None or editor.is_previewing:
+            return None
+        name = self.requests.target(side)
+        landmark = editor.session.landmark(name) if name else None
+        key = (side, landmark, result)
+        if self._ghost_keys.get(side) != key:
+            self._ghost_keys[side] = key
+            ghost = ghost_of(landmark, side, result)
+            if ghost is not None:
+                place, _ = surface.closest(ghost.position)
+                ghost = replace(ghost, position=as_position(place))
+            self._known_ghosts[side] = ghost
+        return self._known_ghosts[side]
 
     def _warp(self, request: _Request) -> _Shaded:
         """Solve and shade; runs in the worker."""
@@ -258,37 +275,7 @@ class Presenter:
     def _on_failure(self, error: Exception) -> None:
         raise error
 
-    # From requests to edits
-
-    def _on_place(self, side: Side, position: NDArray) -> None:
-        session, name = edits.place(self._editor.committed, side, as_position(position))
-        self._editor.commit(session, f"Place {name}")
-        self._editor.select(name, side=side)
-
-    def _on_drag(self, name: str, side: Side, position: NDArray) -> None:
-        self._editor.select(name, side=side)
-        self._editor.preview(edits.move(self._editor.committed, name, side, as_position(position)))
-
-    def _on_drop(self, name: str, _side: Side) -> None:
-        self._editor.commit(self._editor.session, f"Move {name}")
-
-    def _on_rename(self, name: str, new_name: str) -> None:
-        editor = self._editor
-        try:
-            session = edits.rename(editor.committed, name, new_name)
-        except PinwarpError as error:
-            self.complain(str(error))
-            return
-        was_selected = name in editor.selection.names
-        editor.commit(session, f"Rename {name}")
-        if was_selected:
-            editor.select(new_name.strip())
-
-    def _on_enable(self, name: str, enabled: bool) -> None:
-        verb = "Enable" if enabled else "Disable"
-        self._editor.commit(
-            edits.set_enabled(self._editor.committed, name, enabled), f"{verb} {name}"
-        )
+    # The penalty
 
     def _on_penalty(self, penalty: float) -> None:
         session = edits.set_penalty(self._editor.committed, penalty)
@@ -301,30 +288,3 @@ class Presenter:
     def _on_planar(self, planar: bool) -> None:
         label = "Treat as planar" if planar else "Do not treat as planar"
         self._editor.commit(edits.set_planar(self._editor.committed, planar), label)
-
-    def delete_side(self) -> None:
-        """Delete the selected landmarks' position on the selected side."""
-        editor, session = self._editor, self._editor.committed
-        side = editor.selection.side
-        for name in editor.selection.names:
-            landmark = session.landmark(name)
-            if landmark is None:
-                continue
-            # A half-placed landmark has only one position that can be meant.
-            there = landmark.position(side) is not None
-            session = edits.remove_side(session, name, side if there else side.other)
-        editor.commit(session, f"Delete position of {self._selected_words()}")
-
-    def delete_landmarks(self) -> None:
-        """Delete the selected landmarks on both sides."""
-        names = self._editor.selection.names
-        label = f"Delete {self._selected_words()}"
-        self._editor.commit(edits.remove(self._editor.committed, names), label)
-
-    def _selected_words(self) -> str:
-        names = self._editor.selection.names
-        return names[0] if len(names) == 1 else f"{len(names)} landmarks"
-
-    def complain(self, text: str) -> None:
-        """Say what is wrong with something the user just typed; the window shows it."""
-        self._panel.window().statusBar().showMessage(text, 8000)

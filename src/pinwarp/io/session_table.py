@@ -22,6 +22,9 @@ from pinwarp.io.session_header import CORRECT
 _SOURCE = ("source_x", "source_y", "source_z")
 _DESTINATION = ("destination_x", "destination_y", "destination_z")
 _COLUMNS = ("name", "role", "enabled", *_SOURCE, *_DESTINATION, "note")
+# Only there where some landmark is locked.
+_LOCKED = "locked"
+_KNOWN = (*_COLUMNS, _LOCKED)
 
 
 def table_lines(landmarks: Iterable[Landmark]) -> list[str]:
@@ -34,9 +37,10 @@ def table_lines(landmarks: Iterable[Landmark]) -> list[str]:
     """
     rows = list(landmarks)
     # What an older or newer version wrote beside our columns goes back behind them.
-    extra = [c for landmark in rows for c, _ in landmark.extra if c not in _COLUMNS]
+    extra = [c for landmark in rows for c, _ in landmark.extra if c not in _KNOWN]
     extra = list(dict.fromkeys(extra))
-    lines = [csv_line([*_COLUMNS, *map(formula_quoted, extra)])]
+    locks = [_LOCKED] if any(landmark.locked for landmark in rows) else []
+    lines = [csv_line([*_COLUMNS, *locks, *map(formula_quoted, extra)])]
     for landmark in rows:
         others = dict(landmark.extra)
         cells = [
@@ -46,6 +50,7 @@ def table_lines(landmarks: Iterable[Landmark]) -> list[str]:
             *coordinates_text(landmark.source),
             *coordinates_text(landmark.destination),
             formula_quoted(landmark.note),
+            *["1" if landmark.locked else "0" for _ in locks],
             *[formula_quoted(others.get(column, "")) for column in extra],
         ]
         lines.append(csv_line(cells))
@@ -102,7 +107,7 @@ def read_table(
 
 def _read_columns(path: str | Path, row: Row) -> tuple[str, ...]:
     cells = [formula_unquoted(cell.strip()) for cell in row.cells]
-    columns = tuple(cell.lower() if cell.lower() in _COLUMNS else cell for cell in cells)
+    columns = tuple(cell.lower() if cell.lower() in _KNOWN else cell for cell in cells)
     problem = row.problem
     if missing := [column for column in _COLUMNS if column not in columns]:
         problem = f"the column {missing[0]!r} is missing"
@@ -131,9 +136,9 @@ def _landmark(row: Row, columns: Sequence[str], separator: str, is_cut_off: bool
     role = values["role"].strip().lower()
     if role not in {known.value for known in Role}:
         raise ValueError(f"the role {shortened(role)} is neither 'pair' nor 'passenger'")
-    enabled = YES_NO.get(values["enabled"].strip().lower())
-    if enabled is None:
-        raise ValueError(f"'enabled' is {shortened(values['enabled'])} and not 1 or 0")
+    # An empty cell means enabled, and not locked: a landmark as it begins.
+    enabled = _yes_or_no("enabled", values["enabled"])
+    locked = _yes_or_no(_LOCKED, values.get(_LOCKED, "").strip() or "0")
     return Landmark(
         formula_unquoted(values["name"]),
         source=position_of([values[column] for column in _SOURCE], separator),
@@ -144,6 +149,14 @@ def _landmark(row: Row, columns: Sequence[str], separator: str, is_cut_off: bool
         extra=tuple(
             (column, formula_unquoted(values[column]))
             for column in columns
-            if column and column not in _COLUMNS
+            if column and column not in _KNOWN
         ),
+        locked=locked,
     )
+
+
+def _yes_or_no(column: str, text: str) -> bool:
+    value = YES_NO.get(text.strip().lower())
+    if value is None:
+        raise ValueError(f"{column!r} is {shortened(text)} and not 1 or 0")
+    return value

@@ -9,6 +9,7 @@ from pathlib import Path
 from psygnal import Signal
 
 from pinwarp.core.landmarks import Side
+from pinwarp.session.edits import NAME_PATTERN
 from pinwarp.session.history import History
 from pinwarp.session.session import Session
 
@@ -39,10 +40,22 @@ class OverlayKind(StrEnum):
 
 @dataclass(frozen=True)
 class ViewState:
-    """How the session is looked at: not undone, not part of what is saved.
+    """How the session is looked at and worked on: not undone, not part of what is saved.
 
     Parameters
     ----------
+    overlay, opacity
+        Whether and how the warped source is drawn.
+    hovered
+        The landmark under the mouse.
+    locked
+        Whether all landmarks are frozen.
+    guided
+        The landmark that the guide asks for; None without a guide.
+    name_pattern
+        What new landmarks are called.
+    nudge
+        How far an arrow key moves a landmark, in mesh units; None for a share of the bone.
     marker_radius
         Of the landmarks' signs, in logical pixels.
     section
@@ -57,6 +70,10 @@ class ViewState:
     marker_radius: float = 6.0
     wireframe: bool = False
     section: float | None = None
+    locked: bool = False
+    guided: str | None = None
+    name_pattern: str = NAME_PATTERN
+    nudge: float | None = None
 
 
 class Editor:

@@ -15,19 +15,29 @@ from pinwarp.session.session import Session
 UNITS = ("mm", "cm", "m")
 # A mesh with a shorter diagonal is taken to be in metres.
 LARGEST_IN_METRES = 3.0
-_AUTOMATIC = re.compile(r"landmark_(\d+)")
+NAME_PATTERN = "landmark_{n}"
+PASSENGER_PATTERN = "passenger_{n}"
+# Names that nobody chose: such a landmark may go with its last side.
+_AUTOMATIC = re.compile(r"(landmark|passenger)_\d+")
 
 
-def next_name(session: Session) -> str:
+def next_name(session: Session, pattern: str = NAME_PATTERN) -> str:
     """Return the name that the next new landmark gets.
+
+    Parameters
+    ----------
+    pattern
+        Holds ``{n}`` where the number goes.
 
     Examples
     --------
     >>> next_name(Session(landmarks=(Landmark("landmark_4"), Landmark("fovea"))))
     'landmark_5'
     """
-    matches = (_AUTOMATIC.fullmatch(landmark.name) for landmark in session.landmarks)
-    return f"landmark_{max((int(m[1]) for m in matches if m), default=-1) + 1}"
+    before, _, after = pattern.partition("{n}")
+    numbered = re.compile(re.escape(before) + r"(\d+)" + re.escape(after))
+    matches = (numbered.fullmatch(landmark.name) for landmark in session.landmarks)
+    return f"{before}{max((int(m[1]) for m in matches if m), default=-1) + 1}{after}"
 
 
 def next_to_place(session: Session, side: Side) -> str | None:
@@ -38,19 +48,40 @@ def next_to_place(session: Session, side: Side) -> str | None:
     return None
 
 
-def place(session: Session, side: Side, position: Position) -> tuple[Session, str]:
-    """Place a landmark: the first that lacks this side, else a new one.
+def place(
+    session: Session,
+    side: Side,
+    position: Position,
+    *,
+    target: str | None = None,
+    pattern: str = NAME_PATTERN,
+) -> tuple[Session, str]:
+    """Place a landmark: the one that is asked for, else the first that lacks this side, else new.
+
+    Parameters
+    ----------
+    target
+        The landmark that is asked for, if any.
+    pattern
+        What a new one is called; see :func:`next_name`.
 
     Returns
     -------
     session, name
         The changed session, and which landmark was placed.
     """
-    name = next_to_place(session, side)
+    name = target or next_to_place(session, side)
     if name is not None:
         return move(session, name, side, position), name
-    name = next_name(session)
+    name = next_name(session, pattern)
     landmark = Landmark(name).placed(side, position)
+    return replace(session, landmarks=(*session.landmarks, landmark)), name
+
+
+def add_passenger(session: Session, position: Position) -> tuple[Session, str]:
+    """Add a passenger on the source; it is carried by the warp but not solved for."""
+    name = next_name(session, PASSENGER_PATTERN)
+    landmark = Landmark(name, role=Role.PASSENGER).placed(Side.SOURCE, position)
     return replace(session, landmarks=(*session.landmarks, landmark)), name
 
 
@@ -92,9 +123,48 @@ def rename(session: Session, name: str, new_name: str) -> Session:
     return _changed(session, name, lambda landmark: replace(landmark, name=new_name))
 
 
-def set_enabled(session: Session, name: str, enabled: bool) -> Session:
-    """Let a pair take part in the solve, or not."""
-    return _changed(session, name, lambda landmark: replace(landmark, enabled=enabled))
+def set_enabled(session: Session, names: Iterable[str], enabled: bool) -> Session:
+    """Let pairs take part in the solve, or not."""
+    return _all_changed(session, names, lambda landmark: replace(landmark, enabled=enabled))
+
+
+def set_locked(session: Session, names: Iterable[str], locked: bool) -> Session:
+    """Protect landmarks from being moved by accident, or not."""
+    return _all_changed(session, names, lambda landmark: replace(landmark, locked=locked))
+
+
+def set_role(session: Session, names: Iterable[str], role: Role) -> Session:
+    """Make landmarks pairs or passengers; the positions stay, so that there is a way back."""
+    return _all_changed(session, names, lambda landmark: replace(landmark, role=role))
+
+
+def set_note(session: Session, name: str, note: str) -> Session:
+    """Write down something about a landmark."""
+    return _changed(session, name, lambda landmark: replace(landmark, note=note))
+
+
+def reorder(session: Session, names: Iterable[str], row: int) -> Session:
+    """Move landmarks before the one in a row, keeping their order; the last row + 1 is the end.
+
+    Examples
+    --------
+    >>> session = Session(landmarks=tuple(map(Landmark, "abcd")))
+    >>> [landmark.name for landmark in reorder(session, ["a", "c"], 4).landmarks]
+    ['b', 'd', 'a', 'c']
+    """
+    moving = _set_of(names)
+    before, behind = session.landmarks[:row], session.landmarks[row:]
+    taken = tuple(landmark for landmark in session.landmarks if landmark.name in moving)
+    if missing := moving - {landmark.name for landmark in taken}:
+        raise LandmarkError(f"There is no landmark called {min(missing)}.")
+    return replace(
+        session,
+        landmarks=(
+            *(landmark for landmark in before if landmark.name not in moving),
+            *taken,
+            *(landmark for landmark in behind if landmark.name not in moving),
+        ),
+    )
 
 
 def set_penalty(session: Session, penalty: float) -> Session:
@@ -152,6 +222,11 @@ def import_pairs(session: Session, landmarks: Iterable[Landmark]) -> Session:
     return session
 
 
+def _set_of(names: Iterable[str]) -> set[str]:
+    # One name alone is a string, whose letters are not meant.
+    return {names} if isinstance(names, str) else set(names)
+
+
 def _existing(session: Session, name: str) -> Landmark:
     landmark = session.landmark(name)
     if landmark is None:
@@ -160,11 +235,19 @@ def _existing(session: Session, name: str) -> Landmark:
 
 
 def _changed(session: Session, name: str, change: Callable[[Landmark], Landmark]) -> Session:
-    _existing(session, name)
+    return _all_changed(session, [name], change)
+
+
+def _all_changed(
+    session: Session, names: Iterable[str], change: Callable[[Landmark], Landmark]
+) -> Session:
+    changing = _set_of(names)
+    if missing := changing - {landmark.name for landmark in session.landmarks}:
+        raise LandmarkError(f"There is no landmark called {min(missing)}.")
     return replace(
         session,
         landmarks=tuple(
-            change(landmark) if landmark.name == name else landmark
+            change(landmark) if landmark.name in changing else landmark
             for landmark in session.landmarks
         ),
     )
