@@ -25,6 +25,7 @@ from qtpy.QtWidgets import (
 from pinwarp.core.landmarks import Side
 from pinwarp.gui import menus
 from pinwarp.gui.actions import icon, make_actions
+from pinwarp.gui.bone_edits import BoneEdits
 from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Documents
 from pinwarp.gui.guidance import Guidance
@@ -86,6 +87,7 @@ class MainWindow(QMainWindow):
         self._recent = RecentFiles(settings)
         self._lay_out()
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
+        self._bone_edits = BoneEdits(self.editor, self.actions_by_key, self)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
         self.view_controls.add_to(self.findChild(QToolBar, "tools"), self.statusBar())
         self.documents = Documents(
@@ -164,8 +166,9 @@ class MainWindow(QMainWindow):
         fill(
             edit,
             "undo redo - rename delete_side delete_landmark - accept_ghost snap lock set_nudge - "
-            "load_template guide set_pattern - select_none",
+            "load_template guide set_pattern - select_none - swap_sides",
         )
+        fill(edit.addMenu("&Mirror Source"), "mirror_x mirror_y mirror_z")
         menus.fill_view(view, actions)
         for dock in self.findChildren(QDockWidget):
             view.addAction(dock.toggleViewAction())
@@ -370,6 +373,7 @@ class MainWindow(QMainWindow):
         self._settings.setValue("layout", self.saveState())
         self.jobs.shut_down()
         self.presenter.shut_down()
+        self._bone_edits.shut_down()
         self.view_controls.shut_down()
         for signal in (self.editor.session_changed, self.editor.selection_changed):
             signal.disconnect(self._on_session)
