@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from qtpy.QtCore import QPoint, QPointF, QRectF, Qt
 from qtpy.QtGui import QColor, QImage, QPainter, QWheelEvent
-from qtpy.QtWidgets import QApplication
+from qtpy.QtWidgets import QApplication, QMenu
 
 from pinwarp.core.alignment import Similarity, fit_similarity
 from pinwarp.core.landmarks import Landmark, LandmarkState, Side, as_position, positions
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui.camera_pose import Pose, inverse
+from pinwarp.gui.menus import actions_of
 from pinwarp.gui.scale_bar import paint_scale_bar
 from pinwarp.gui.section import Section
 from pinwarp.io.mesh_formats.ply import write_ply
@@ -491,3 +492,70 @@ def test_escape_during_a_drag_brings_the_overlay_back(user):
     assert not np.allclose(there.overlay_points, before)
     user.press(Qt.Key.Key_Escape, widget=there)
     assert np.allclose(there.overlay_points, before)
+
+
+# The menu
+
+
+def test_every_action_can_be_reached_in_a_menu_inner_menus_included(user):
+    bar = user.window.menuBar()
+    top = bar.findChildren(QMenu, options=Qt.FindChildOption.FindDirectChildrenOnly)
+    found = {action.objectName() for menu in top for action in actions_of(menu)}
+    assert set(user.window.actions_by_key) <= found
+    inner = {menu.title() for menu in user.window.findChildren(QMenu)}
+    assert {"&Import", "&Look From", "Ca&meras"} <= inner
+
+
+# Whole bones
+
+
+def test_swapping_the_sides_takes_every_position_with_its_bone_and_can_be_undone(user):
+    user.open_sample()
+    before = user.session
+    user.trigger("swap_sides")
+    after = user.session
+    assert after.mesh(SOURCE) is before.mesh(DESTINATION)
+    assert after.landmarks[0].source == before.landmarks[0].destination
+    assert user.window.viewports[SOURCE].layer.caption == "femur_subject.ply"
+    vertices = after.mesh(SOURCE).vertices
+    assert len(user.window.viewports[DESTINATION].overlay_points) == len(vertices)
+    assert user.editor.undo_label == "Swap source and destination"
+    user.press(Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert user.session == before
+    assert edits.swap_sides(after) == before
+
+
+def test_a_mirrored_source_is_saved_and_comes_back_the_same(user, sample_copy):
+    user.window.documents.open_session(sample_copy)
+    user.settle()
+    mesh, landmark = user.session.mesh(SOURCE), user.session.landmarks[0]
+    bytes_before = user.session.source.path.read_bytes()
+    user.trigger("mirror_x")
+    mirrored = user.session.mesh(SOURCE)
+    middle = mesh.bounds[:, 0].mean()
+    assert np.allclose(mirrored.vertices[:, 0], 2 * middle - mesh.vertices[:, 0])
+    assert np.array_equal(mirrored.vertices[:, 1:], mesh.vertices[:, 1:])
+    assert user.session.landmarks[0].source[0] == pytest.approx(2 * middle - landmark.source[0])
+    surface = user.window.viewports[SOURCE].surface
+    assert not surface.inside_out, "triangles turn round, so that normals point outwards"
+    assert "mirrored" in user.window.viewports[SOURCE].layer.caption
+    user.press(Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
+    assert "# source_mirrored: x\n" in sample_copy.read_text(encoding="utf-8")
+    saved = user.session
+    user.trigger("open_sample")
+    user.window.documents.open_session(sample_copy)
+    user.settle()
+    assert np.array_equal(user.session.mesh(SOURCE).vertices, mirrored.vertices)
+    assert np.array_equal(user.session.mesh(SOURCE).faces, mirrored.faces)
+    assert user.session.landmarks == saved.landmarks
+    assert user.session.source.path.read_bytes() == bytes_before, "the mesh file is untouched"
+
+
+def test_mirroring_is_one_step_to_undo_and_needs_a_source(user):
+    assert not user.window.actions_by_key["mirror_x"].isEnabled()
+    user.open_sample()
+    before = user.session
+    user.trigger("mirror_z")
+    assert user.editor.undo_label == "Mirror source across z"
+    user.press(Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert user.session == before

@@ -23,6 +23,7 @@ from qtpy.QtWidgets import (
 
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.actions import icon, make_actions
+from pinwarp.gui.bone_edits import BoneEdits
 from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Documents
 from pinwarp.gui.guidance import Guidance
@@ -69,6 +70,7 @@ class MainWindow(QMainWindow):
         self._recent = RecentFiles(settings)
         self._lay_out()
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
+        self._bone_edits = BoneEdits(self.editor, self.actions_by_key, self)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
         self.view_controls.add_to(self.findChild(QToolBar, "tools"), self.statusBar())
         self.documents = Documents(
@@ -328,6 +330,7 @@ class MainWindow(QMainWindow):
         self.jobs.shut_down()
         self.presenter.shut_down()
         self.table_presenter.shut_down()
+        self._bone_edits.shut_down()
         self.view_controls.shut_down()
         for signal in (self.editor.session_changed, self.editor.selection_changed):
             signal.disconnect(self._on_session)

@@ -159,6 +159,6 @@ class MarkerLayer(QWidget):
         for i in order:
             if self._markers[i].labelled:
                 painter.setOpacity(0.5 if hidden[i] else 1.0)
-                label = self._markers[i].name
-                draw_label(painter, label, QPointF(*places[i]), self.width(), self.radius)
+                at = QPointF(*places[i])
+                draw_label(painter, self._markers[i].name, at, self.width(), self.radius)
         painter.setOpacity(1.0)

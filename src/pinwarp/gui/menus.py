@@ -17,7 +17,7 @@ MENUS = {
     "&Edit": (
         "undo redo - copy paste - rename rename_many note - "
         "toggle_enabled toggle_locked toggle_role - move_up move_down - "
-        "delete_side delete_landmark - select_none filter"
+        "delete_side delete_landmark - swap_sides @mirror - select_none filter"
     ),
     "&Place": (
         "accept_ghost next_incomplete - load_template guide set_pattern - snap set_nudge lock"
@@ -31,6 +31,7 @@ MENUS = {
 SUBMENUS = {
     "@recent": ("Open &Recent", ""),
     "@import": ("&Import", "import_source import_destination import_pairs"),
+    "@mirror": ("&Mirror Source", "mirror_x mirror_y mirror_z"),
     "@shown": ("&Show Source", "show_warp show_rigid show_similarity"),
     "@sides": (
         "&Look From",

@@ -148,7 +148,8 @@ class Presenter:
         for side, viewport in self._viewports.items():
             viewport.show_surface(self._surface(session.mesh(side)))
             file = session.mesh_file(side)
-            viewport.layer.caption = file.path.name if file is not None else ""
+            mirrored = f" (mirrored: {file.mirrored})" if file is not None and file.mirrored else ""
+            viewport.layer.caption = file.path.name + mirrored if file is not None else ""
         self._model.show_session(session)
         self._panel.show_session(session)
         self._on_looks()

@@ -23,11 +23,14 @@ class MeshReference:
         The hash of the file as it was when the landmarks were placed.
     vertices
         Its number of vertices then.
+    mirrored
+        The axes across which the session sees it mirrored, such as ``"x"``.
     """
 
     path: Path
     sha256: str
     vertices: int
+    mirrored: str = ""
 
 
 def mesh_reference(text: str, folder: Path) -> MeshReference:

@@ -53,12 +53,15 @@ class MeshFile:
         The hash of the file's bytes, those the mesh was made of.
     notes
         What was changed or left out, as sentences for the user.
+    mirrored
+        The axes across which the mesh was mirrored after reading, such as ``"x"``.
     """
 
     path: Path
     mesh: Mesh
     sha256: str
     notes: tuple[str, ...]
+    mirrored: str = ""
 
 
 def read_mesh(

@@ -96,6 +96,8 @@ def write_session(path: str | Path, record: SessionRecord) -> None:
     ):
         if mesh is not None:
             header.append((key, mesh_text(mesh, folder)))
+            if mesh.mirrored:
+                header.append((key.replace("mesh", "mirrored"), mesh.mirrored))
     header += [
         ("warping_penalty", repr(float(record.warping_penalty))),
         ("penalty_convention", record.penalty_convention),

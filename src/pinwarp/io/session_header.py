@@ -7,10 +7,12 @@ import math
 import os
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from pinwarp.core.errors import FileFormatError, NewerFileError
+from pinwarp.core.mirror import AXES
 from pinwarp.io.csv_cells import YES_NO, as_sentence, number_of, shortened
 from pinwarp.io.mesh_reference import MeshReference, mesh_reference
 
@@ -20,12 +22,14 @@ CORRECT = "Correct it in a text editor, or use an earlier copy of the file."
 _FIELDS = {
     "source_mesh": "source_mesh",
     "destination_mesh": "destination_mesh",
+    "source_mirrored": "source_mirrored",
+    "destination_mirrored": "destination_mirrored",
     "warping_penalty": "warping_penalty",
     "penalty_convention": "penalty_convention",
     "unit": "unit",
     "treat_as_planar": "planar",
 }
-"""The field of a session record that each known key fills."""
+"""The field of a session record, or of one of its meshes, that each known key fills."""
 _CONVENTIONS = ("regularising", "opynsim")
 
 
@@ -151,8 +155,9 @@ def read_values(
     """
     folder = Path(os.path.abspath(path)).parent
     known: dict[str, Any] = {}
-    unknown = []
+    unknown, lines = [], {}
     for line, key, text in header:
+        lines[key] = line
         if key not in _FIELDS:
             unknown.append((key, text))
             continue
@@ -162,6 +167,18 @@ def read_values(
             known[_FIELDS[key]] = _value(key, text, folder)
         except ValueError as error:
             raise FileFormatError(path, f"{as_sentence(str(error))} {CORRECT}", line) from None
+    for side in ("source", "destination"):
+        axes = known.pop(f"{side}_mirrored", None)
+        if axes is None:
+            continue
+        mesh = known.get(f"{side}_mesh")
+        if mesh is None:
+            raise FileFormatError(
+                path,
+                f"The {side} mesh is mirrored, but there is none. {CORRECT}",
+                lines[f"{side}_mirrored"],
+            )
+        known[f"{side}_mesh"] = replace(mesh, mirrored=axes)
     return known, tuple(unknown)
 
 
@@ -170,6 +187,8 @@ def _value(key: str, text: str, folder: Path) -> MeshReference | float | bool | 
     match key:
         case "source_mesh" | "destination_mesh":
             return mesh_reference(text, folder)
+        case "source_mirrored" | "destination_mirrored":
+            return _axes(key, text)
         case "warping_penalty":
             return _penalty(text)
         case "treat_as_planar":
@@ -182,6 +201,13 @@ def _value(key: str, text: str, folder: Path) -> MeshReference | float | bool | 
             )
         case _:
             return text
+
+
+def _axes(key: str, text: str) -> str:
+    axes = "".join(axis for axis in AXES if axis in text)
+    if not text or len(axes) != len(text):
+        raise ValueError(f"{key} is {shortened(text)} and names no axes such as x or xy")
+    return axes
 
 
 def _penalty(text: str) -> float:

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from pinwarp.core.errors import LandmarkError
 from pinwarp.core.landmarks import Landmark, Position, Role, Side
+from pinwarp.core.mirror import mirrored_mesh, mirrored_points, toggled
 from pinwarp.core.spline import PenaltyConvention, check_penalty
 from pinwarp.io.clipboard_table import PastedLandmark
 from pinwarp.io.meshes import MeshFile
@@ -225,6 +226,48 @@ def set_mesh(session: Session, side: Side, file: MeshFile) -> Session:
     if session.source is None and session.destination is None:
         session = set_unit(session, "m" if file.mesh.diagonal < LARGEST_IN_METRES else "mm")
     return session.with_mesh(side, file)
+
+
+def swap_sides(session: Session) -> Session:
+    """Warp the other way round: meshes and positions change sides; twice is nothing.
+
+    Every position stays on the bone that it was placed on. A passenger goes with its bone too:
+    on the destination it is kept, but nothing carries it until the sides are swapped back.
+    """
+    return replace(
+        session,
+        source=session.destination,
+        destination=session.source,
+        landmarks=tuple(
+            replace(landmark, source=landmark.destination, destination=landmark.source)
+            for landmark in session.landmarks
+        ),
+    )
+
+
+def mirror_source(session: Session, axis: str) -> Session:
+    """Mirror the source mesh and its landmarks across the middle of one axis of its frame.
+
+    The file of the mesh is untouched: the session remembers that it is seen in a mirror.
+
+    Raises
+    ------
+    LandmarkError
+        Without a source mesh: nothing tells where the middle is.
+    """
+    file = session.source
+    if not isinstance(file, MeshFile):
+        raise LandmarkError("There is no source mesh to mirror: open one first.")
+    mirrored = replace(
+        file, mesh=mirrored_mesh(file.mesh, axis), mirrored=toggled(file.mirrored, axis)
+    )
+    landmarks = []
+    for landmark in session.landmarks:
+        if landmark.source is not None:
+            (moved,) = mirrored_points([landmark.source], file.mesh, axis)
+            landmark = landmark.placed(Side.SOURCE, moved)
+        landmarks.append(landmark)
+    return replace(session, source=mirrored, landmarks=tuple(landmarks))
 
 
 def import_side(session: Session, side: Side, landmarks: Iterable[Landmark]) -> Session:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from pinwarp.core.landmarks import Landmark, Side, pairs_of
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.mirror import mirrored_mesh
 from pinwarp.core.spline import PenaltyConvention
 from pinwarp.io.meshes import MeshFile
 from pinwarp.io.session_file import MeshReference, SessionRecord
@@ -97,8 +98,8 @@ def from_record(
 ) -> Session:
     """Return the session that a file describes, with the meshes that could be read."""
     return Session(
-        source=source or record.source_mesh,
-        destination=destination or record.destination_mesh,
+        source=_as_seen(source, record.source_mesh),
+        destination=_as_seen(destination, record.destination_mesh),
         landmarks=record.landmarks,
         warping_penalty=record.warping_penalty,
         convention=PenaltyConvention(record.penalty_convention),
@@ -108,7 +109,17 @@ def from_record(
     )
 
 
+def _as_seen(
+    file: MeshFile | None, reference: MeshReference | None
+) -> MeshFile | MeshReference | None:
+    """Return a mesh as the session sees it: in a mirror, where it says so."""
+    if file is None or reference is None or not reference.mirrored:
+        return file or reference
+    mesh = mirrored_mesh(file.mesh, reference.mirrored)
+    return replace(file, mesh=mesh, mirrored=reference.mirrored)
+
+
 def _reference(file: MeshFile | MeshReference | None) -> MeshReference | None:
     if isinstance(file, MeshFile):
-        return MeshReference(file.path, file.sha256, len(file.mesh.vertices))
+        return MeshReference(file.path, file.sha256, len(file.mesh.vertices), file.mirrored)
     return file
