@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import re
+import socket
 import sys
 from pathlib import Path
 
@@ -24,8 +27,7 @@ def _open_window(
     demo: bool,
     screenshot: Path | None,
 ) -> int:
-    on_x11 = sys.platform.startswith("linux") and "QT_QPA_PLATFORM" not in os.environ
-    if on_x11 and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+    if not _has_display():
         print(
             "pinwarp: there is no display. Run it on a desktop, or under a virtual one:\n"
             "    xvfb-run -a -s '-screen 0 1920x1080x24' pinwarp --demo --screenshot demo.png",
@@ -39,6 +41,25 @@ def _open_window(
 
     opening = Opening(session, source, destination, source_landmarks, destination_landmarks)
     return run(opening, demo=demo, screenshot=screenshot)
+
+
+def _has_display() -> bool:
+    """Say whether a window can open; Qt would abort with a misleading message."""
+    if not sys.platform.startswith("linux") or "QT_QPA_PLATFORM" in os.environ:
+        return True
+    if os.environ.get("WAYLAND_DISPLAY"):
+        return True
+    display = os.environ.get("DISPLAY", "")
+    local = re.fullmatch(r"(?:unix)?:(\d+)(?:\.\d+)?", display)
+    if local is None:
+        return bool(display)
+    # A display of this machine listens at a socket by its number, in the file system or without.
+    place = f"/tmp/.X11-unix/X{local[1]}"
+    for address in (place, "\0" + place):
+        with socket.socket(socket.AF_UNIX) as probe, contextlib.suppress(OSError):
+            probe.connect(address)
+            return True
+    return False
 
 
 if __name__ == "__main__":

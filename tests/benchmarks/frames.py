@@ -52,7 +52,7 @@ def _window(folder: Path, triangles: int) -> MainWindow:
     other.save(destination)
     settings = QSettings(str(folder / "settings.ini"), QSettings.Format.IniFormat)
     window = MainWindow(settings, PrintedMessages())
-    window.resize(1600, 900)
+    window.resize(1280, 800)
     window.show()
     window.documents.open_mesh(Side.SOURCE, source)
     window.documents.open_mesh(Side.DESTINATION, destination)

@@ -70,6 +70,12 @@ def test_without_a_display_it_says_so():
     assert "there is no display" in outcome.stderr
 
 
+def test_a_display_that_does_not_answer_is_no_display():
+    outcome = run("--demo", DISPLAY=":7777")
+    assert outcome.returncode == 2
+    assert "there is no display" in outcome.stderr
+
+
 def test_a_picture_of_the_sample_is_written(tmp_path):
     path = tmp_path / "pictures" / "demo.png"
     outcome = run("--demo", "--screenshot", path, XDG_CONFIG_HOME=str(tmp_path))

@@ -6,6 +6,7 @@ import gc
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 from qtpy.QtCore import QEvent, QPoint, QPointF, QSettings, Qt
 from qtpy.QtTest import QTest
@@ -35,6 +36,7 @@ class ScriptedDialogs:
     def __init__(self) -> None:
         self.opens: list[Path] = []
         self.saves: list[Path] = []
+        self.texts: list[str] = []
         self.unsaved = Answer.DISCARD
         self.unsaved_questions = 0
         self.missing: Path | None = None
@@ -50,6 +52,9 @@ class ScriptedDialogs:
     def ask_unsaved(self, _name):
         self.unsaved_questions += 1
         return self.unsaved
+
+    def ask_text(self, _title, _question, _proposal):
+        return self.texts.pop(0) if self.texts else None
 
     def ask_missing_mesh(self, _side, _path):
         return self.missing
@@ -98,8 +103,6 @@ class Driver:
 
     def place_of(self, side: Side, position) -> QPoint:
         """Where a position is on the screen of a viewport."""
-        import numpy as np
-
         ((x, y),) = self.window.viewports[side].project(np.array([position]))
         return QPointF(x, y).toPoint()
 
@@ -115,6 +118,15 @@ class Driver:
             x = hits[len(hits) // 2] + (i % 2) * 4
             places.append(viewport.pick(QPointF(x, y)).tolist())
         return places
+
+    def free_place(self, side: Side) -> QPoint:
+        """A place on the bone, away from every landmark."""
+        layer = self.window.viewports[side].layer
+        for position in self.places_down_the_bone(side, 30):
+            at = self.place_of(side, position)
+            if all(np.hypot(x - at.x(), y - at.y()) > 25 for x, y in layer.places()):
+                return at
+        raise AssertionError("no free place on the bone")
 
     def click(self, side: Side, at: QPoint, modifier=Qt.KeyboardModifier.NoModifier) -> None:
         viewport = self.window.viewports[side]
@@ -137,7 +149,7 @@ class Driver:
         self.settle()
 
     @staticmethod
-    def move_with(widget, at: QPointF, button) -> None:
+    def move_with(widget, at: QPointF, button, modifiers=Qt.KeyboardModifier.NoModifier) -> None:
         """Move the mouse with a button held (QTest.mouseMove forgets the buttons)."""
         from qtpy.QtCore import QEvent
         from qtpy.QtGui import QMouseEvent
@@ -148,7 +160,7 @@ class Driver:
             QPointF(widget.mapToGlobal(at.toPoint())),
             Qt.MouseButton.NoButton,
             button,
-            Qt.KeyboardModifier.NoModifier,
+            modifiers,
         )
         QApplication.sendEvent(widget, event)
         QApplication.processEvents()

@@ -120,3 +120,17 @@ def test_escape_during_a_slow_drag_brings_the_mesh_back(large):
     large.press(Qt.Key.Key_Escape, widget=viewport)
     assert drawn(viewport) == {"_full", "_overlay"}
     assert np.allclose(viewport.overlay_points, before)
+
+
+def test_selecting_and_hovering_render_no_bone_anew(user):
+    user.open_sample()
+    viewport = user.window.viewports[Side.SOURCE]
+    user.qtbot.wait(50)
+    before = viewport.renders
+    user.editor.select(user.session.landmarks[0].name)
+    user.editor.look(hovered=user.session.landmarks[1].name)
+    user.qtbot.wait(50)
+    assert [m.name for m in viewport.layer.markers if m.labelled] == [
+        x.name for x in user.session.landmarks[:2]
+    ]
+    assert viewport.renders == before

@@ -230,6 +230,60 @@ def evaluate_scalar(source, weights, affine, points, out):
 
 
 @_compile
+def evaluate_jacobian(source, weights, affine, points, out):
+    """Write ``d f_c / d v_j`` into out[:, c, j], all in the precision of the points.
+
+    A landmark's own term is left out at that landmark, where the spline has a cone.
+    """
+    count = source.shape[0]
+    total = points.shape[0]
+    # Keeps 0/0 away at a landmark and is lost to rounding anywhere else.
+    tiny = np.finfo(points.dtype).tiny
+    for block in numba.prange((total + BLOCK - 1) // BLOCK):
+        first = block * BLOCK
+        size = min(BLOCK, total - first)
+        x = np.empty(BLOCK, points.dtype)
+        y = np.empty(BLOCK, points.dtype)
+        z = np.empty(BLOCK, points.dtype)
+        J = np.empty((9, BLOCK), points.dtype)
+        for i in range(size):
+            x[i] = points[first + i, 0]
+            y[i] = points[first + i, 1]
+            z[i] = points[first + i, 2]
+        for c in range(3):
+            for j in range(3):
+                J[3 * c + j, :size] = affine[1 + j, c]
+        for k in range(count):
+            ux = source[k, 0]
+            uy = source[k, 1]
+            uz = source[k, 2]
+            wx = weights[k, 0]
+            wy = weights[k, 1]
+            wz = weights[k, 2]
+            for i in range(size):
+                dx = x[i] - ux
+                dy = y[i] - uy
+                dz = z[i] - uz
+                q = 1 / np.sqrt(dx * dx + dy * dy + dz * dz + tiny)
+                dx *= q
+                dy *= q
+                dz *= q
+                J[0, i] += wx * dx
+                J[1, i] += wx * dy
+                J[2, i] += wx * dz
+                J[3, i] += wy * dx
+                J[4, i] += wy * dy
+                J[5, i] += wy * dz
+                J[6, i] += wz * dx
+                J[7, i] += wz * dy
+                J[8, i] += wz * dz
+        for i in range(size):
+            for c in range(3):
+                for j in range(3):
+                    out[first + i, c, j] = J[3 * c + j, i]
+
+
+@_compile
 def add_influence(start, influence, shift, out):
     """Write ``start + influence (x) shift`` into out: (m, 3), (m,), (3,), (m, 3)."""
     for i in numba.prange(start.shape[0]):

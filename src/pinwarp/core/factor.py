@@ -86,6 +86,7 @@ class SourceFactor:
     reflectors: Matrix
     triangle: Matrix
     upper: Matrix
+    corner: Matrix
     coupling: Matrix
     bending: Matrix
     well_spaced: bool
@@ -101,6 +102,34 @@ class SourceFactor:
         values, vectors = np.linalg.eigh(self.bending)
         return values * self.scale, vectors
 
+    @cached_property
+    def modes_at_landmarks(self) -> Matrix:
+        """What each mode is at the landmarks: ``Q2 Z`` (n, modes), orthonormal columns."""
+        _, vectors = self.modes
+        return self.rotate_back(np.vstack([np.zeros((self.rank + 1, len(vectors))), vectors]))
+
+    def certainty(self, penalties: Matrix) -> tuple[Matrix, Matrix]:
+        """Return ``(stiffest + s) / (lambda + s)`` of every mode for (k,) penalties.
+
+        Relative to the stiffest mode, so that it has a limit, 1, at an infinite penalty.
+
+        Returns
+        -------
+        certainty : (modes, k)
+            0 for the modes that the solve drops: what duplicate landmarks leave undetermined.
+        noise : (k,)
+            ``s / (stiffest + s)``.
+        """
+        values, _ = self.modes
+        largest = self.stiffest_mode + penalties
+        finite = np.isfinite(largest)
+        noise = np.divide(penalties, largest, out=np.ones_like(largest), where=finite)
+        shifts = values[:, None] + penalties
+        certainty = np.zeros_like(shifts)
+        np.divide(largest, shifts, out=certainty, where=finite & (shifts > self.smallest_mode))
+        certainty[:, ~finite] = 1.0
+        return certainty, noise
+
     @property
     def has_modes(self) -> bool:
         """Whether the eigendecomposition has been computed already."""
@@ -114,10 +143,14 @@ class SourceFactor:
     @property
     def smallest_mode(self) -> float:
         """What an eigenvalue must exceed to be told from rounding, in mesh units."""
+        return float(8 * len(self.source) * np.finfo(np.float64).eps * self.stiffest_mode)
+
+    @property
+    def stiffest_mode(self) -> float:
+        """The largest eigenvalue, but no less than the scale: mesh units."""
         values, _ = self.modes
         # With duplicates alone left, the largest eigenvalue is rounding too: compare to the scale.
-        largest = max(float(values[-1]) if len(values) else 0.0, self.scale)
-        return float(8 * len(self.source) * np.finfo(np.float64).eps * largest)
+        return max(float(values[-1]) if len(values) else 0.0, self.scale)
 
     @property
     def poles(self) -> Matrix:
@@ -246,6 +279,7 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
         reflectors=reflectors,
         triangle=triangle,
         upper=np.triu(packed[:columns, :columns]),
+        corner=projected[:columns, :columns].copy(),
         coupling=projected[:columns, columns:].copy(),
         bending=projected[columns:, columns:].copy(),
         well_spaced=well_spaced,
@@ -274,6 +308,17 @@ def _spacing(
         if pair not in duplicates
     )
     return findings, duplicates, False
+
+
+def affine_coordinates(factor: SourceFactor, points: Matrix) -> Matrix:
+    """Return ``R^-T p_v`` for (m, 3) points as (m, r + 1), ``p_v`` their row of ``P``.
+
+    Its square length is the leverage of the affine fit at the point.
+    """
+    spanned = (points - factor.centre) @ (factor.directions.T / factor.scale)
+    rows = np.column_stack([np.ones(len(points)), spanned])
+    solved = solve_triangular(factor.upper, rows.T, trans=1, check_finite=False)
+    return np.asarray(solved.T)
 
 
 def solve_upper(factor: SourceFactor, values: Matrix) -> Matrix:

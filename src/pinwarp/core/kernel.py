@@ -82,6 +82,7 @@ def warm_up() -> None:
     fields = evaluate_fields(source, np.zeros((1, 3)), affine, points, loops=loops)
     combine_fields(fields, np.zeros(1), affine, points, loops=loops)
     influence = evaluate_scalar(source, np.zeros(1), np.zeros(4), points, loops=loops)
+    evaluate_jacobian(np.zeros((1, 3)), np.zeros((1, 3)), affine, points, loops=loops)
     add_influence(points, influence, np.zeros(3), np.empty_like(points), loops=loops)
 
 
@@ -118,13 +119,7 @@ def evaluate(source: Matrix, weights: Matrix, affine: Matrix, points: ArrayLike)
     >>> evaluate(np.zeros((1, 3)), np.zeros((1, 3)), shift, [[0, 0, 0]]).tolist()
     [[1.0, 0.0, 0.0]]
     """
-    points = np.ascontiguousarray(points, dtype=np.float64)
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise LandmarkError(f"The points have the shape {points.shape} instead of (m, 3).")
-    usable = np.abs(points) <= LARGEST_COORDINATE
-    if not usable.all():
-        row = int(np.flatnonzero(~usable.all(axis=1))[0])
-        raise LandmarkError(f"The point in row {row} is not usable: {points[row].tolist()}.")
+    points = as_points(points)
     centre = source.mean(axis=0) if len(source) else np.zeros(3)
     about_centre = about(affine, centre)
     local, moved = points - centre, source - centre
@@ -135,6 +130,59 @@ def evaluate(source: Matrix, weights: Matrix, affine: Matrix, points: ArrayLike)
         # The points are our own copy: the result may take their place.
         loops.evaluate(moved, np.ascontiguousarray(weights), about_centre, local, local)
     return local
+
+
+def evaluate_jacobian(
+    source: Matrix,
+    weights: Matrix,
+    affine: Matrix,
+    points: ArrayLike,
+    *,
+    loops: ModuleType | None = None,
+) -> Matrix:
+    """Return ``J[m, c, j] = d f_c / d v_j`` in double precision.
+
+    ``J = A + sum_i w_i (v - u_i)^T / |v - u_i|``; at a landmark its own term is left out.
+
+    Parameters
+    ----------
+    source, weights, affine, points
+        As for :func:`evaluate`.
+
+    Returns
+    -------
+    (m, 3, 3) float64
+        Destination units per source unit.
+    """
+    points = as_points(points)
+    out = np.empty((len(points), 3, 3))
+    loops = loops or _worth(3 * len(points) * len(source))
+    if loops is not None:
+        with _threads_for(3 * len(points) * len(source)):
+            loops.evaluate_jacobian(source, np.ascontiguousarray(weights), affine, points, out)
+        return out
+    out[:] = affine[1:].T
+    step = max(1, CHUNK // max(1, len(source)))
+    for first in range(0, len(points) if len(source) else 0, step):
+        part = slice(first, first + step)
+        distances = cdist(points[part], source)
+        inverse = np.divide(1.0, distances, out=np.zeros_like(distances), where=distances > 0)
+        for j in range(3):
+            slopes = (points[part, j, None] - source[:, j]) * inverse
+            out[part, :, j] += slopes @ weights
+    return out
+
+
+def as_points(points: ArrayLike) -> Matrix:
+    """Return the points as (m, 3) float64; LandmarkError where that cannot be."""
+    points = np.ascontiguousarray(points, dtype=np.float64)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise LandmarkError(f"The points have the shape {points.shape} instead of (m, 3).")
+    usable = np.abs(points) <= LARGEST_COORDINATE
+    if not usable.all():
+        row = int(np.flatnonzero(~usable.all(axis=1))[0])
+        raise LandmarkError(f"The point in row {row} is not usable: {points[row].tolist()}.")
+    return points
 
 
 def about(affine: Matrix, centre: Matrix) -> Matrix:

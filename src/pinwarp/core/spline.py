@@ -121,22 +121,8 @@ def solve(
     >>> np.allclose(spline.evaluate(source), source + 0.1 * source ** 2)
     True
     """
-    destination = as_positions(destination, "destination landmark")
-    if len(destination) != len(factor.source):
-        raise LandmarkError(
-            f"There are {len(factor.source)} source landmarks but {len(destination)} destination "
-            "landmarks: each needs its counterpart."
-        )
+    displacement, target, linear = displacements(factor, destination)
     penalty = check_penalty(penalty)
-    target = destination.mean(axis=0)
-    displacement = destination - target
-    linear = np.zeros((3, 3))
-    if factor.rank < 3:
-        # The affine part is open: start from a similarity, the spline adds only what data fix.
-        similarity = fit_similarity(factor.source, destination)
-        linear = similarity.scale * similarity.rotation.T
-        displacement = displacement - (factor.source - factor.centre) @ linear
-
     weights, affine, findings = solve_values(factor, displacement, penalty, convention)
     linear = linear + affine[1:]
     coefficients = np.vstack([target + affine[0] - factor.centre @ linear, linear])
@@ -145,14 +131,49 @@ def solve(
             "The landmarks' coordinates are too large or too far apart to solve with: "
             "check the unit and the outliers."
         )
+    target_positions = np.asarray(destination, dtype=np.float64)
     return Spline(
         source=factor.source,
         weights=weights,
         affine=coefficients,
         penalty=penalty,
         convention=convention,
-        findings=(*factor.findings, *_conflicts(factor, destination, penalty), *findings),
+        findings=(*factor.findings, *_conflicts(factor, target_positions, penalty), *findings),
     )
+
+
+def displacements(factor: SourceFactor, destination: ArrayLike) -> tuple[Matrix, Matrix, Matrix]:
+    """Check the destination and take from it what the spline does not have to explain.
+
+    Parameters
+    ----------
+    destination
+        (n, 3) destination landmarks.
+
+    Returns
+    -------
+    displacement : (n, 3)
+        ``destination - target - (source - centre) @ linear``.
+    target : (3,)
+        Mean of the destination.
+    linear : (3, 3)
+        A similarity where the landmarks leave the affine part open (rank < 3), else 0.
+    """
+    destination = as_positions(destination, "destination landmark")
+    if len(destination) != len(factor.source):
+        raise LandmarkError(
+            f"There are {len(factor.source)} source landmarks but {len(destination)} destination "
+            "landmarks: each needs its counterpart."
+        )
+    target = destination.mean(axis=0)
+    displacement = destination - target
+    linear = np.zeros((3, 3))
+    if factor.rank < 3:
+        # The affine part is open: start from a similarity, the spline adds only what data fix.
+        similarity = fit_similarity(factor.source, destination)
+        linear = similarity.scale * similarity.rotation.T
+        displacement = displacement - (factor.source - factor.centre) @ linear
+    return displacement, target, linear
 
 
 def solve_values(

@@ -75,6 +75,35 @@ SPECS = (
         "show_coordinates", "Show &Coordinates", "Ctrl+Shift+C", "", "In the table, to edit", True
     ),
     ActionSpec("fit", "&Fit Both Views", "Home", "fit", "Look at both bones as a whole"),
+    ActionSpec("accept_ghost", "&Accept Ghost", "Space", "", "Place it where it is expected"),
+    ActionSpec("snap", "S&nap to Surface", "S", "", "Put the selection back onto the bone"),
+    ActionSpec("lock", "&Lock Landmarks", "L", "lock", "Freeze all landmarks", True),
+    ActionSpec("set_nudge", "Nudge Ste&p…", "", "", "How far an arrow key moves a landmark"),
+    ActionSpec("set_pattern", "Name Pa&ttern…", "", "", "What new landmarks are called"),
+    ActionSpec(
+        "load_template", "Load &Template…", "Ctrl+T", "", "A list of landmarks to be asked for"
+    ),
+    ActionSpec("guide", "&Guide", "G", "guide", "Ask for one landmark after the other", True),
+    ActionSpec("export_passengers", "Warped &Passengers…", "", "", "Where the warp carries them"),
+    ActionSpec("focus", "F&ocus on Selection", "F", "", "Look at the selected landmarks closely"),
+    ActionSpec("view_front", "&Front", "1", "", "The side that Fit shows"),
+    ActionSpec("view_back", "&Back", "2"),
+    ActionSpec("view_left", "&Left", "3"),
+    ActionSpec("view_right", "&Right", "4"),
+    ActionSpec("view_top", "&Top", "5"),
+    ActionSpec("view_bottom", "Botto&m", "6"),
+    ActionSpec("link_linked", "&Linked", "", "", "Both move, seen from the same side", True),
+    ActionSpec("link_rotation", "&Rotation Only", "", "", "Pan and zoom are of their own", True),
+    ActionSpec("link_free", "&Free", "", "", "Each view moves by itself", True),
+    ActionSpec("show_warp", "&Warped", "", "", "The source as the warp bends it", True),
+    ActionSpec("show_rigid", "Aligned &Rigidly", "", "", "Turned and moved only", True),
+    ActionSpec("show_similarity", "Aligned with &Scaling", "", "", "Turned, moved, sized", True),
+    ActionSpec("markers_larger", "La&rger Landmarks", "]"),
+    ActionSpec("markers_smaller", "S&maller Landmarks", "["),
+    ActionSpec("wireframe", "W&ireframe Bones", "Shift+W", "", "Draw edges only", True),
+    ActionSpec("section", "&Cross-Section", "X", "section", "Cut both bones open", True),
+    ActionSpec("link_next", "&Next Mode", "K", "link_linked"),
+    ActionSpec("shortcuts", "&Shortcuts", "F1", "", "All keys and mouse gestures"),
     ActionSpec("about", "&About pinwarp"),
     ActionSpec("about_penalty", "About the Warping &Penalty"),
 )
@@ -98,6 +127,7 @@ def make_actions(parent: QObject) -> dict[str, QAction]:
     # A second habit for the same thing.
     actions["redo"].setShortcuts([QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")])
     actions["delete_side"].setShortcuts([QKeySequence("Del"), QKeySequence("Backspace")])
+    actions["shortcuts"].setShortcuts([QKeySequence("F1"), QKeySequence("?")])
     return actions
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import threading
 from collections.abc import Callable
@@ -67,6 +68,11 @@ def user_settings() -> QSettings:
     return QSettings(str(folder / "settings.ini"), QSettings.Format.IniFormat)
 
 
+def no_settings() -> QSettings:
+    """Return settings that remember nothing: a picture shows the window as it comes."""
+    return QSettings(os.devnull, QSettings.Format.IniFormat)
+
+
 def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None) -> int:
     """Open the window on some files.
 
@@ -88,7 +94,7 @@ def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None)
     # The spline's own threads and BLAS's would fight over the cores.
     with threadpool_limits(limits=1, user_api="blas"):
         dialogs = PrintedMessages() if screenshot is not None else None
-        window = MainWindow(user_settings(), dialogs)
+        window = MainWindow(user_settings() if screenshot is None else no_settings(), dialogs)
         window.show()
         if demo:
             window.documents.open_session(sample_session(), as_new=True)

@@ -8,16 +8,18 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
-from qtpy.QtCore import QPointF
+from qtpy.QtCore import QPointF, Signal
 from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.landmarks import Side
 from pinwarp.gui import theme
+from pinwarp.gui.camera_pose import Matrix, Pose, best_frame, fitted
 from pinwarp.gui.drawn_mesh import DrawnMesh, OverlayWarp
 from pinwarp.gui.fast_view import FastView
 from pinwarp.gui.marker_layer import MarkerLayer
 from pinwarp.gui.scene import Scene
+from pinwarp.gui.section import Section
 from pinwarp.gui.surface import Surface, shaded
 
 _COLOURS = {Side.SOURCE: theme.SOURCE_COLOUR, Side.DESTINATION: theme.DESTINATION_COLOUR}
@@ -32,12 +34,16 @@ SLOW_FRAME = 0.040
 class Canvas(FastView):
     """Draws a scene and the overlay; knows where things are on the screen."""
 
+    orbiting_changed = Signal(bool)
+
     def __init__(self, side: Side, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.side = side
         self.layer = MarkerLayer(self, side.value.capitalize())
         self.surface: Surface | None = None
+        self.is_placing_camera = False
         self._scene: Scene | None = None
+        self._section: Section | None = None
         bone = {"color": _COLOURS[side]} | _BONE
         warped = {"color": theme.OVERLAY_COLOUR} | _OVERLAY
         self._full = DrawnMesh(self, "surface", **bone)
@@ -76,17 +82,31 @@ class Canvas(FastView):
             if surface.stand_in is not None:
                 self._coarse.show(shaded(surface.stand_in.vertices, surface.stand_in.faces))
             self.look_at_all()
+        if self._section is not None:
+            # The other bone is cut from the same side, in its own depth.
+            self._cut(self._section.direction, self._section.share)
         self._full_frame_seconds = 0.0
         self._choose_detail()
 
     def show_scene(self, scene: Scene) -> None:
         """Show another state of the session; the mesh is set by :meth:`show_surface`."""
-        if scene == self._scene:
+        before, self._scene = self._scene, scene
+        if scene == before:
             return
-        self._scene = scene
+        # The sheet repaints by itself: no bone is rendered anew for a label.
+        self.layer.hint, self.layer.unit = scene.hint, scene.unit
+        self.layer.radius = scene.marker_radius
         self.layer.set_markers(scene.markers)
-        self.layer.hint = scene.hint
-        self._choose_detail()
+        self.layer.ghost = scene.ghost
+        if before is None or scene.wireframe != before.wireframe:
+            for drawn in (self._full, self._coarse):
+                drawn.set_wireframe(scene.wireframe)
+            self.update()
+        if scene.section != (before.section if before is not None else None):
+            self._show_section(scene.section)
+        overlay = (scene.overlay_visible, scene.overlay_opacity)
+        if before is None or overlay != (before.overlay_visible, before.overlay_opacity):
+            self._choose_detail()
 
     def show_overlay(self, warps: Sequence[OverlayWarp | None]) -> None:
         """Show the warped source over this side's mesh: in full, as a stand-in, or both."""
@@ -106,6 +126,25 @@ class Canvas(FastView):
         """Show no warped source."""
         self._overlay.remove()
         self._coarse_overlay.remove()
+        self.update()
+
+    def _show_section(self, share: float | None) -> None:
+        """Move the cross-section; when it is switched on it faces the camera."""
+        if share is not None and self._section is not None:
+            self._section.move(share)
+            self.update()
+        else:
+            self._cut(None if share is None else -np.array(self.camera.direction), share or 0.0)
+
+    def _cut(self, direction: NDArray | None, share: float) -> None:
+        self._section = None
+        if direction is not None:
+            points = self.bone.points if self.bone is not None else np.zeros((1, 3))
+            self._section = Section(direction, points)
+            self._section.move(share)
+        plane = self._section.plane if self._section is not None else None
+        for drawn in (self._full, self._coarse, self._overlay, self._coarse_overlay):
+            drawn.set_clip(plane)
         self.update()
 
     @property
@@ -139,6 +178,7 @@ class Canvas(FastView):
         if orbiting != self._orbiting:
             self._orbiting = orbiting
             self._choose_detail()
+            self.orbiting_changed.emit(orbiting)
 
     @property
     def _is_moving(self) -> bool:
@@ -172,29 +212,47 @@ class Canvas(FastView):
 
     # The camera
 
-    def look_at_all(self) -> None:
-        """Fit everything, the longest axis upright and the widest across."""
-        mesh = self.surface.polydata if self.surface is not None else self._overlay.polydata
-        if mesh is None:
+    @property
+    def bone(self) -> pv.PolyData | None:
+        """What the camera is fitted to: this side's mesh, else the overlay, else None."""
+        return self.surface.polydata if self.surface is not None else self._overlay.polydata
+
+    def look_at_all(self, frame: Matrix | None = None) -> None:
+        """Fit everything, the longest axis upright and the widest across, or from a given side."""
+        bone = self.bone
+        if bone is None:
             return
-        size = np.array(mesh.bounds_size)
-        up = int(np.argmax(size))
-        along = min((axis for axis in range(3) if axis != up), key=lambda axis: size[axis])
-        direction, upright = np.zeros(3), np.zeros(3)
-        direction[along], upright[up] = 1.0, 1.0
-        centre = np.array(mesh.center)
-        self.camera.focal_point = centre
-        self.camera.position = centre + direction * float(np.linalg.norm(size)) * 2
-        self.camera.up = upright
-        self.reset_camera(render=False, bounds=mesh.bounds)
-        self.camera.zoom(1.25)
-        self.camera.is_set = True
+        if frame is None:
+            frame = best_frame(bone.bounds_size)
+        # A few thousand vertices tell how large a bone looks.
+        points = np.asarray(bone.points)[:: max(1, bone.n_points // 5000)]
+        aspect = max(1, self.width()) / max(1, self.height())
+        self.set_pose(fitted(points, frame, self.camera.GetViewAngle(), aspect))
+
+    def set_pose(self, pose: Pose) -> None:
+        """Put the camera somewhere; :attr:`is_placing_camera` tells that no hand moves it."""
+        camera, self.is_placing_camera = self.camera, True
+        camera.SetFocalPoint(pose.focal_point)
+        camera.SetPosition(pose.position)
+        camera.SetViewUp(pose.up)
+        camera.SetParallelScale(pose.parallel_scale)
+        camera.is_set = True
+        self.is_placing_camera = False
         self.renderer.ResetCameraClippingRange()
         self.update()
 
     def view_key(self) -> tuple[Any, ...]:
         """Return what decides which landmarks are hidden: camera, size and mesh."""
-        return (self.camera.GetMTime(), self.width(), self.height(), id(self.surface))
+        share = self._section.share if self._section is not None else None
+        return (self.camera.GetMTime(), self.width(), self.height(), id(self.surface), share)
+
+    @property
+    def unit_per_pixel(self) -> float:
+        """The length that a logical pixel shows where the camera looks, in mesh units."""
+        camera, height = self.camera, max(1, self.height())
+        if camera.GetParallelProjection():
+            return 2 * camera.GetParallelScale() / height
+        return 2 * camera.GetDistance() * np.tan(np.radians(camera.GetViewAngle()) / 2) / height
 
     def _projection(self) -> NDArray:
         aspect = max(1, self.width()) / max(1, self.height())
@@ -222,7 +280,30 @@ class Canvas(FastView):
         """Return the position on the surface under a place on the screen, None beside it."""
         if self.surface is None:
             return None
-        return self.surface.first_hit(*self._ray(at))
+        near, far = self._ray(at)
+        start = near if self._section is None else self._section.entry(near, far)
+        return self.surface.first_hit(start, far) if start is not None else None
+
+    def in_view_plane(self, at: QPointF, through: NDArray) -> NDArray:
+        """Return the position under a place on the screen, as deep in the view as another one."""
+        near, far = self._ray(at)
+        along = np.array(self.camera.direction)
+        towards = far - near
+        return near + towards * float((through - near) @ along / (towards @ along))
+
+    def view_axes(self) -> tuple[NDArray, NDArray]:
+        """Return the unit vectors that point right and up on the screen."""
+        along, up = np.array(self.camera.direction), np.array(self.camera.up)
+        right = np.cross(along, up)
+        right /= np.linalg.norm(right)
+        return right, np.cross(right, along)
+
+    def pixels_per_unit(self, position: NDArray) -> float:
+        """Return how many logical pixels a mesh unit takes at a position."""
+        right, _ = self.view_axes()
+        size = self.surface.diagonal * 0.01 if self.surface is not None else 1.0
+        a, b = self.project(np.array([position, position + right * size]))
+        return float(np.linalg.norm(b - a)) / size
 
     def behind_surface(self, positions: NDArray) -> NDArray[np.bool_]:
         """Return which positions the mesh hides from the camera."""
@@ -233,7 +314,9 @@ class Canvas(FastView):
         if self.camera.parallel_projection:
             eye = eye + np.array(self.camera.direction) * -1e3 * self.surface.diagonal
         for i, position in enumerate(positions):
-            hidden[i] = self.surface.hides(eye, position)
+            # What is clipped away neither hides nor can be grabbed.
+            start = eye if self._section is None else self._section.entry(eye, position)
+            hidden[i] = start is None or self.surface.hides(start, position)
         return hidden
 
     def resizeEvent(self, event: QResizeEvent) -> None:

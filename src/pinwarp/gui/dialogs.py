@@ -6,7 +6,7 @@ from enum import Enum, auto
 from pathlib import Path
 
 from qtpy.QtCore import Qt
-from qtpy.QtWidgets import QFileDialog, QMessageBox, QWidget
+from qtpy.QtWidgets import QFileDialog, QInputDialog, QMessageBox, QWidget
 
 
 class Answer(Enum):
@@ -47,6 +47,11 @@ class Dialogs:
         if choice == kinds.Save:
             return Answer.SAVE
         return Answer.DISCARD if choice == kinds.Discard else Answer.CANCEL
+
+    def ask_text(self, title: str, question: str, proposal: str) -> str | None:
+        """Ask for a line of text; None when the user would rather not."""
+        text, accepted = QInputDialog.getText(self._window, title, question, text=proposal)
+        return text if accepted else None
 
     def ask_missing_mesh(self, side: str, path: Path) -> Path | None:
         """Ask where a mesh has gone; None opens the session without it."""

@@ -25,9 +25,11 @@ from pinwarp.io.landmark_formats.opensim_creator import (
 )
 from pinwarp.io.meshes import MESH_SUFFIXES, MeshFile, read_mesh, write_mesh
 from pinwarp.io.session_file import MeshReference, read_session, write_session
+from pinwarp.io.template import read_template
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
-from pinwarp.session.results import warped_mesh
+from pinwarp.session.guide import next_incomplete, with_template
+from pinwarp.session.results import warped_mesh, warped_passengers
 from pinwarp.session.session import from_record, to_record
 
 _MESHES = "Meshes ({});;All files (*)".format(" ".join(f"*{suffix}" for suffix in MESH_SUFFIXES))
@@ -231,6 +233,27 @@ class Documents:
         chosen = side or Side.SOURCE
         self._run(f"Reading {path.name}", lambda _progress: read_landmarks(path, chosen), arrived)
 
+    def ask_and_load_template(self, loaded: Callable[[str | None], None]) -> None:
+        """Ask for a list of names and add those that are missing, to be placed.
+
+        Parameters
+        ----------
+        loaded
+            Called with the first landmark that is not complete then.
+        """
+        filters = "Landmark lists (*.csv *.txt);;All files (*)"
+        path = self._dialogs.ask_open("Load a template", filters, self._folder())
+        if path is None:
+            return
+
+        def arrived(names: tuple[str, ...]) -> None:
+            session = with_template(self._editor.committed, names)
+            self._editor.commit(session, f"Load template {path.name}")
+            self.said.emit(f"{len(names)} names from {path.name}")
+            loaded(next_incomplete(session, None))
+
+        self._run(f"Reading {path.name}", lambda _progress: read_template(path), arrived)
+
     def _report_import(self, path: Path, reading: LandmarkReading) -> None:
         count = len(reading.landmarks)
         what = "pair" if reading.is_pairs else "landmark"
@@ -293,6 +316,19 @@ class Documents:
             if side is None
             else (lambda: write_side(path, landmarks, side))
         )
+        if self._write(write, path):
+            self.said.emit(f"Exported {path.name}")
+
+    def export_passengers(self) -> None:
+        """Ask for a file and write where the warp carries the passengers."""
+        proposal = self._folder() / "passengers_warped.landmarks.csv"
+        path = self._dialogs.ask_save("Export the warped passengers", _LANDMARKS, proposal)
+        if path is None:
+            return
+
+        def write() -> None:
+            write_side(path, warped_passengers(self._editor.committed), Side.DESTINATION)
+
         if self._write(write, path):
             self.said.emit(f"Exported {path.name}")
 

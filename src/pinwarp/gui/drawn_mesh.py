@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
+from vtkmodules.vtkCommonDataModel import vtkPlane
 
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui.surface import triangles
@@ -43,6 +44,8 @@ class DrawnMesh:
         self._name = name
         self._look = look
         self._faces: NDArray | None = None
+        self._clip: vtkPlane | None = None
+        self._culling = "none"
         self.polydata: pv.PolyData | None = None
         self.actor: pv.Actor | None = None
 
@@ -64,23 +67,49 @@ class DrawnMesh:
             pickable=False,
             **(self._look | look),
         )
+        self._culling = look.get("culling", "none")
+        self.set_clip(self._clip)
 
     def write(
         self, mesh: Mesh, vertices: NDArray[np.float32], normals: NDArray[np.float32], **look: Any
     ) -> None:
         """Draw a mesh's triangles over other vertices; in place where they are the same."""
         if self.polydata is None or self._faces is not mesh.faces:
-            polydata = triangles(vertices, mesh.faces)
-            polydata.point_data["Normals"] = normals
+            # Copies, since VTK takes arrays as they are and they are written into later: the
+            # solver keeps its own.
+            polydata = triangles(vertices.copy(), mesh.faces)
+            polydata.point_data["Normals"] = normals.copy()
             polydata.point_data.active_normals_name = "Normals"
             self.show(polydata, **look)
             self._faces = mesh.faces
             return
+        if look.get("culling", self._culling) != self._culling:
+            self._culling = look["culling"]
+            self.set_clip(self._clip)
         self.polydata.points[:] = vertices
         self.polydata.point_data["Normals"][:] = normals
         self.polydata.GetPoints().Modified()
         self.polydata.GetPointData().GetNormals().Modified()
         self.polydata.Modified()
+
+    def set_clip(self, plane: vtkPlane | None) -> None:
+        """Draw only what lies on the positive side of a plane, or everything."""
+        self._clip = plane
+        if self.actor is None:
+            return
+        mapper = self.actor.mapper
+        mapper.RemoveAllClippingPlanes()
+        if plane is not None:
+            mapper.AddClippingPlane(plane)
+        # Where it is cut one looks at its inside, which must not be culled.
+        self.actor.prop.culling = "none" if plane is not None else self._culling
+
+    def set_wireframe(self, wireframe: bool) -> None:
+        """Draw its edges, or its triangles."""
+        style = "wireframe" if wireframe else "surface"
+        self._look["style"] = style
+        if self.actor is not None:
+            self.actor.prop.style = style
 
     def set_visible(self, visible: bool) -> None:
         """Draw it, or not."""

@@ -11,13 +11,13 @@ from qtpy.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QMainWindow,
-    QMenu,
     QProgressBar,
     QPushButton,
     QSizePolicy,
     QSlider,
     QSplitter,
     QToolBar,
+    QVBoxLayout,
     QWidget,
 )
 
@@ -25,33 +25,22 @@ from pinwarp.core.landmarks import Side
 from pinwarp.gui.actions import icon, make_actions
 from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Documents
+from pinwarp.gui.guidance import Guidance
+from pinwarp.gui.guide_bar import GuideBar
 from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY
 from pinwarp.gui.jobs import SlowJob
 from pinwarp.gui.landmark_panel import LandmarkPanel
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
+from pinwarp.gui.menus import fill_toolbar, make_menus, shortcut_groups
 from pinwarp.gui.penalty_panel import PenaltyPanel
 from pinwarp.gui.presenter import Presenter
 from pinwarp.gui.recent_files import RecentFiles
+from pinwarp.gui.shortcut_overlay import ShortcutOverlay
 from pinwarp.gui.table_presenter import TablePresenter
+from pinwarp.gui.view_controls import ViewControls
 from pinwarp.gui.viewport import Viewport
 from pinwarp.io.samples import sample_session
-from pinwarp.session import edits
 from pinwarp.session.editor import Editor
-
-_TOOLBAR = (
-    "open_session",
-    "open_source",
-    "open_destination",
-    "save",
-    "export_mesh",
-    None,
-    "undo",
-    "redo",
-    "delete_side",
-    None,
-    "fit",
-    "overlay",
-)
 
 
 class MainWindow(QMainWindow):
@@ -80,8 +69,13 @@ class MainWindow(QMainWindow):
         self._recent = RecentFiles(settings)
         self._lay_out()
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
+        self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
+        self.view_controls.add_to(self.findChild(QToolBar, "tools"), self.statusBar())
         self.documents = Documents(
             self.editor, self.jobs, self._dialogs, self._recent, self.presenter.keep_surface
+        )
+        self.guidance = Guidance(
+            self.editor, self.presenter, self.documents, self._dialogs, self.guide_bar, self.hint
         )
         self.table_presenter = TablePresenter(
             self.editor,
@@ -89,7 +83,7 @@ class MainWindow(QMainWindow):
             self.landmarks,
             self.actions_by_key,
             self._dialogs,
-            self.presenter.complain,
+            self._say,
         )
         self._connect()
         self._restore_layout()
@@ -106,7 +100,14 @@ class MainWindow(QMainWindow):
             splitter.addWidget(self.viewports[side])
             splitter.setStretchFactor(splitter.count() - 1, 1)
         splitter.setSizes([1000, 1000])
-        self.setCentralWidget(splitter)
+        self.guide_bar = GuideBar()
+        centre = QWidget()
+        column = QVBoxLayout(centre)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self.guide_bar)
+        column.addWidget(splitter, 1)
+        self.setCentralWidget(centre)
         self._add_dock(
             "landmarks", "Landmarks", self.landmarks, Qt.DockWidgetArea.RightDockWidgetArea
         )
@@ -133,45 +134,20 @@ class MainWindow(QMainWindow):
         return dock
 
     def _make_menus(self) -> None:
-        actions = self.actions_by_key
-
-        def fill(menu: QMenu, keys: str) -> None:
-            for key in keys.split():
-                if key == "-":
-                    menu.addSeparator()
-                else:
-                    menu.addAction(actions[key])
-
-        file = self.menuBar().addMenu("&File")
-        fill(file, "open_source open_destination - open_session")
-        self._recent_menu = file.addMenu("Open &Recent")
+        # Kept: Python must not let go of a menu that Qt still shows.
+        self._menus = make_menus(self.menuBar(), self.actions_by_key)
+        self._recent_menu = self._menus["@recent"]
         self._recent_menu.aboutToShow.connect(self._fill_recent)
-        fill(file, "open_sample - save save_as -")
-        fill(file.addMenu("&Import"), "import_source import_destination import_pairs")
-        fill(file.addMenu("E&xport Landmarks"), "export_source export_destination export_pairs")
-        fill(file, "export_mesh - quit")
-        fill(
-            self.menuBar().addMenu("&Edit"),
-            "undo redo - copy paste - rename rename_many note - "
-            "toggle_enabled toggle_locked toggle_role - move_up move_down - "
-            "delete_side delete_landmark - select_none next_incomplete filter",
-        )
-        view = self.menuBar().addMenu("&View")
-        fill(view, "overlay fit - show_coordinates -")
         for dock in self.findChildren(QDockWidget):
-            view.addAction(dock.toggleViewAction())
-        fill(self.menuBar().addMenu("&Help"), "about_penalty about")
+            self._menus["&View"].addAction(dock.toggleViewAction())
+        self.shortcuts = ShortcutOverlay(self, shortcut_groups(self.actions_by_key))
 
     def _make_toolbar(self) -> None:
         bar = QToolBar("Tools", self)
         bar.setObjectName("tools")
         bar.setMovable(False)
         bar.setIconSize(QSize(20, 20))
-        for key in _TOOLBAR:
-            if key is None:
-                bar.addSeparator()
-            else:
-                bar.addAction(self.actions_by_key[key])
+        fill_toolbar(bar, self.actions_by_key)
         self.opacity = QSlider(Qt.Orientation.Horizontal)
         self.opacity.setRange(5, 100)
         self.opacity.setFixedWidth(110)
@@ -219,10 +195,16 @@ class MainWindow(QMainWindow):
             "quit": self.close,
             "undo": editor.undo,
             "redo": editor.redo,
-            "delete_side": self.presenter.delete_side,
-            "delete_landmark": self.presenter.delete_landmarks,
+            "delete_side": self.presenter.requests.delete_side,
+            "delete_landmark": self.presenter.requests.delete_landmarks,
+            "accept_ghost": self.presenter.requests.accept_ghost,
+            "snap": self.presenter.requests.snap,
+            "set_nudge": self.guidance.ask_nudge,
+            "set_pattern": self.guidance.ask_pattern,
+            "load_template": self.guidance.load_template,
+            "export_passengers": documents.export_passengers,
+            "shortcuts": self.shortcuts.toggle,
             "select_none": editor.select,
-            "fit": self._fit,
             "about": lambda: self._dialogs.tell("About pinwarp", ABOUT),
             "about_penalty": lambda: self._dialogs.tell("About the warping penalty", ABOUT_PENALTY),
         }
@@ -230,6 +212,10 @@ class MainWindow(QMainWindow):
             # Qt's "checked" argument is of no use to any of them.
             actions[key].triggered.connect(lambda _checked=False, call=function: call())
         actions["overlay"].toggled.connect(lambda on: editor.look(overlay=on))
+        actions["lock"].toggled.connect(lambda on: editor.look(locked=on))
+        actions["guide"].toggled.connect(self.guidance.switch)
+        self.presenter.requests.refused.connect(self._say)
+        self.guidance.said.connect(self._say)
         self.opacity.valueChanged.connect(lambda value: editor.look(opacity=value / 100))
         for side, viewport in self.viewports.items():
             viewport.files_dropped.connect(
@@ -250,10 +236,6 @@ class MainWindow(QMainWindow):
         """Open the sample bones as a new session, asking about unsaved work first."""
         if self.documents.may_lose_changes():
             self.documents.open_session(sample_session(), as_new=True)
-
-    def _fit(self) -> None:
-        for viewport in self.viewports.values():
-            viewport.look_at_all()
 
     def _say(self, text: str) -> None:
         self.statusBar().showMessage(text, 6000)
@@ -296,32 +278,16 @@ class MainWindow(QMainWindow):
         actions["export_mesh"].setEnabled(
             session.mesh(Side.SOURCE) is not None and bool(session.pairs)
         )
-        self._on_hint()
+        self.guidance.show()
 
     def _on_view(self, _changed: object = None) -> None:
         view = self.editor.view
         self.actions_by_key["overlay"].setChecked(view.overlay)
+        self.actions_by_key["lock"].setChecked(view.locked)
+        self.actions_by_key["guide"].setChecked(view.guided is not None)
         self.opacity.setEnabled(view.overlay)
         self.opacity.setValue(round(view.opacity * 100))
-        self._on_hint()
-
-    def _on_hint(self) -> None:
-        """Say what a click would do right now."""
-        editor, session = self.editor, self.editor.session
-        if editor.view.hovered is not None:
-            landmark = session.landmark(editor.view.hovered)
-            state = f": {landmark.state.value}" if landmark is not None else ""
-            self.hint.setText(f"{editor.view.hovered}{state} – click selects, drag moves it")
-            return
-        missing = [side for side in Side if session.mesh(side) is None]
-        if missing:
-            self.hint.setText(f"Open the {missing[0].value} mesh to begin, or drop it on its view.")
-            return
-        targets = [
-            f"on the {side.value} places {edits.next_to_place(session, side) or 'a new landmark'}"
-            for side in Side
-        ]
-        self.hint.setText(f"A click {targets[0]}, {targets[1]}. Drag to orbit.")
+        self.guidance.show()
 
     # Slow jobs
 
@@ -362,6 +328,7 @@ class MainWindow(QMainWindow):
         self.jobs.shut_down()
         self.presenter.shut_down()
         self.table_presenter.shut_down()
+        self.view_controls.shut_down()
         for signal in (self.editor.session_changed, self.editor.selection_changed):
             signal.disconnect(self._on_session)
         self.editor.view_changed.disconnect(self._on_view)

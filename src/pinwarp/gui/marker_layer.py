@@ -15,8 +15,10 @@ from qtpy.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen
 from qtpy.QtWidgets import QWidget
 
 from pinwarp.gui import theme
-from pinwarp.gui.marker_painting import EXTENT, draw_label, marker_pixmap
+from pinwarp.gui.marker_painting import RADIUS, draw_label, extent, marker_pixmap
+from pinwarp.gui.scale_bar import paint_scale_bar
 from pinwarp.gui.scene import Marker
+from pinwarp.session.ghost import Ghost
 
 if TYPE_CHECKING:
     from pinwarp.gui.canvas import Canvas
@@ -31,6 +33,9 @@ class MarkerLayer(QWidget):
         self._title = title
         self.caption = ""
         self.hint = ""
+        self.ghost: Ghost | None = None
+        self.unit = ""
+        self.radius = RADIUS
         self._markers: tuple[Marker, ...] = ()
         self._hidden = np.zeros(0, dtype=bool)
         self._hidden_for: object = None
@@ -70,15 +75,21 @@ class MarkerLayer(QWidget):
         distances = np.hypot(*(self.places() - [at.x(), at.y()]).T)
         distances[self.hidden()] = np.inf
         index = int(np.argmin(distances))
-        return self._markers[index] if distances[index] <= within else None
+        # A large sign can be grabbed wherever it is seen.
+        return self._markers[index] if distances[index] <= max(within, self.radius + 2) else None
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        """Paint title, landmarks, labels and the hint of an empty viewport."""
+        """Paint title, scale bar, landmarks, labels and the hint of an empty viewport."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._paint_title(painter)
+        if self._canvas.bone is not None:
+            length = self._canvas.unit_per_pixel
+            paint_scale_bar(painter, QRectF(self.rect()), length, self.unit)
         if self.hint:
             self._paint_hint(painter)
+        if self.ghost is not None:
+            self._paint_ghost(painter, self.ghost)
         self._paint_markers(painter)
         painter.end()
 
@@ -106,6 +117,27 @@ class MarkerLayer(QWidget):
         painter.setPen(QColor(theme.INK))
         painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, self.hint)
 
+    def _paint_ghost(self, painter: QPainter, ghost: Ghost) -> None:
+        """Paint a dashed ring where a landmark is expected, in a disc as wide as the doubt."""
+        position = np.array(ghost.position)
+        ((x, y),) = self._canvas.project(position[None])
+        at = QPointF(x, y)
+        colour = QColor(theme.GHOST_COLOUR)
+        if ghost.deviation is not None:
+            radius = ghost.deviation * self._canvas.pixels_per_unit(position)
+            colour.setAlphaF(0.22)
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(colour)
+            painter.drawEllipse(at, radius, radius)
+        for pen in (
+            QPen(QColor(theme.PAPER), 3.5),
+            QPen(QColor(theme.GHOST_COLOUR), 2, Qt.PenStyle.DotLine),
+        ):
+            painter.setPen(pen)
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawEllipse(at, 8, 8)
+        draw_label(painter, f"{ghost.name}?", at, self.width())
+
     def _paint_markers(self, painter: QPainter) -> None:
         places, hidden = self.places(), self.hidden()
         ratio = self.devicePixelRatioF()
@@ -116,11 +148,14 @@ class MarkerLayer(QWidget):
         )
         for i in order:
             marker = self._markers[i]
-            pixmap = marker_pixmap(marker.state, marker.selected, bool(hidden[i]), ratio)
-            x, y = places[i]
-            painter.drawPixmap(QPointF(x - EXTENT / 2, y - EXTENT / 2), pixmap)
+            pixmap = marker_pixmap(
+                marker.state, marker.selected, bool(hidden[i]), ratio, self.radius
+            )
+            x, y = places[i] - extent(self.radius) / 2
+            painter.drawPixmap(QPointF(x, y), pixmap)
         for i in order:
             if self._markers[i].labelled:
                 painter.setOpacity(0.5 if hidden[i] else 1.0)
-                draw_label(painter, self._markers[i].name, QPointF(*places[i]))
+                label = self._markers[i].name
+                draw_label(painter, label, QPointF(*places[i]), self.width(), self.radius)
         painter.setOpacity(1.0)

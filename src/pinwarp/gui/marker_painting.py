@@ -11,26 +11,30 @@ from pinwarp.core.landmarks import LandmarkState
 from pinwarp.gui import theme
 
 RADIUS = 6.0
-# Room for the halo around the largest sign.
-EXTENT = 26
+
+
+def extent(radius: float) -> float:
+    """Return the width of a sign's picture: room for the halo around it."""
+    return 2 * (radius + 7)
 
 
 @functools.lru_cache(maxsize=256)
 def marker_pixmap(
     state: LandmarkState, selected: bool, hidden: bool, ratio: float, radius: float = RADIUS
 ) -> QPixmap:
-    """Return the picture of a landmark, EXTENT logical pixels wide.
+    """Return the picture of a landmark, :func:`extent` logical pixels wide.
 
     Paired is a filled disc, half-placed a hollow ring, a passenger a diamond, a disabled one a
     grey disc with a bar. Behind the surface all are faint.
     """
-    pixmap = QPixmap(round(EXTENT * ratio), round(EXTENT * ratio))
+    width = extent(radius)
+    pixmap = QPixmap(round(width * ratio), round(width * ratio))
     pixmap.setDevicePixelRatio(ratio)
     pixmap.fill(Qt.GlobalColor.transparent)
     painter = QPainter(pixmap)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     painter.setOpacity(0.3 if hidden else 1.0)
-    centre = QPointF(EXTENT / 2, EXTENT / 2)
+    centre = QPointF(width / 2, width / 2)
     if selected:
         painter.setPen(QPen(QColor(theme.OUTLINE), 1.0))
         painter.setBrush(QColor(theme.SELECTED_COLOUR))
@@ -57,7 +61,8 @@ def marker_pixmap(
             painter.drawEllipse(centre, radius, radius)
             if state is LandmarkState.DISABLED:
                 painter.setPen(QPen(QColor(theme.PAPER), 2))
-                painter.drawLine(centre + QPointF(-3, 3), centre + QPointF(3, -3))
+                bar = QPointF(radius / 2, -radius / 2)
+                painter.drawLine(centre - bar, centre + bar)
     painter.end()
     return pixmap
 
@@ -72,15 +77,22 @@ def state_icon(state: LandmarkState) -> QIcon:
     return icon
 
 
-def draw_label(painter: QPainter, text: str, at: QPointF) -> QRectF:
-    """Write a label beside a point, on a paper plate so that it reads on any bone."""
+def draw_label(
+    painter: QPainter, text: str, at: QPointF, room: float, radius: float = RADIUS
+) -> QRectF:
+    """Write a label beside a point, on a paper plate so that it reads on any bone.
+
+    It stands on the right, or on the left where that would leave the room (the picture's width).
+    """
     metrics = painter.fontMetrics()
     plate = QRectF(
-        at.x() + 13,
+        at.x() + radius + 7,
         at.y() - metrics.height() / 2 - 2,
         metrics.horizontalAdvance(text) + 12,
         metrics.height() + 4,
     )
+    if plate.right() > room - 2:
+        plate.moveRight(at.x() - radius - 7)
     paper = QColor(theme.PAPER)
     paper.setAlphaF(0.88)
     painter.setPen(QPen(QColor(0, 0, 0, 40), 1))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import weakref
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum, auto
 from typing import Any
 
@@ -13,15 +13,18 @@ from numpy.typing import NDArray
 from pinwarp.core.landmarks import Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import PenaltyConvention
+from pinwarp.gui.aligned import as_shown
 from pinwarp.gui.drawn_mesh import OverlayWarp
 from pinwarp.gui.jobs import LatestWins
+from pinwarp.gui.landmark_requests import LandmarkRequests
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
 from pinwarp.gui.penalty_panel import PenaltyPanel
 from pinwarp.gui.scene import scene_of
 from pinwarp.gui.surface import Surface, shading_normals, triangles
 from pinwarp.gui.viewport import Viewport
 from pinwarp.session import edits
-from pinwarp.session.editor import Editor
+from pinwarp.session.editor import Editor, OverlayKind
+from pinwarp.session.ghost import Ghost, ghost_of
 from pinwarp.session.results import WarpInputs, WarpResult, WarpSolver
 from pinwarp.session.session import Session
 
@@ -39,6 +42,7 @@ class _Request:
     inputs: WarpInputs
     kind: _Kind
     result: WarpResult | None = None
+    overlay: OverlayKind = OverlayKind.WARP
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,9 +83,13 @@ class Presenter:
         self._surfaces: weakref.WeakKeyDictionary[Mesh, Surface] = weakref.WeakKeyDictionary()
         self.solver = WarpSolver()
         self._warps = LatestWins(self._warp)
-        self._asked: tuple[WarpInputs, bool] | None = None
+        self._asked: tuple[WarpInputs, bool, OverlayKind] | None = None
         self.result: WarpResult | None = None
         self._shown: weakref.WeakKeyDictionary[Mesh, OverlayWarp] = weakref.WeakKeyDictionary()
+        self.ghosts: dict[Side, Ghost | None] = dict.fromkeys(Side)
+        self._known_ghosts: dict[Side, Ghost | None] = {}
+        self._ghost_keys: dict[Side, object] = {}
+        self.requests = LandmarkRequests(editor, viewports, self.ghosts.get)
         self._connect()
         self._on_session(editor.session)
 
@@ -92,8 +100,6 @@ class Presenter:
         editor.view_changed.connect(self._on_looks)
         self._warps.computed.connect(self._on_warp)
         self._warps.failed.connect(self._on_failure)
-        for side, viewport in self._viewports.items():
-            self._connect_viewport(side, viewport)
         self._table.selection_requested.connect(
             lambda names, side: editor.select(*names, side=Side(side) if side else None)
         )
@@ -107,18 +113,6 @@ class Presenter:
             lambda unit: editor.commit(edits.set_unit(editor.committed, unit), "Change unit")
         )
 
-    def _connect_viewport(self, side: Side, viewport: Viewport) -> None:
-        editor = self._editor
-        viewport.surface_clicked.connect(lambda position: self._on_place(side, position))
-        viewport.background_clicked.connect(editor.select)
-        viewport.landmark_clicked.connect(lambda name: editor.select(name, side=side))
-        viewport.landmark_dragged.connect(
-            lambda name, position: self._on_drag(name, side, position)
-        )
-        viewport.landmark_dropped.connect(lambda name: self._on_drop(name, side))
-        viewport.drag_cancelled.connect(editor.cancel_preview)
-        viewport.hovered.connect(lambda name: editor.look(hovered=name))
-
     def shut_down(self) -> None:
         """Stop the worker and let go of the editor."""
         self._warps.shut_down()
@@ -131,7 +125,9 @@ class Presenter:
         """Whether what is shown follows from the session as it is."""
         if not self._warps.is_idle or self._asked is None:
             return False
-        asked, previewed = self._asked
+        asked, previewed, overlay = self._asked
+        if overlay is not self._editor.view.overlay_kind:
+            return False
         current = WarpInputs.of(self._editor.session, asked.stand_in)
         return asked == current and previewed == self._editor.is_previewing
 
@@ -164,10 +160,12 @@ class Presenter:
         if editor.is_previewing:
             destination.set_warping(True)
         inputs, previewing = self._inputs(), editor.is_previewing
-        if (inputs, previewing) == self._asked:
+        overlay = editor.view.overlay_kind
+        if (inputs, previewing, overlay) == self._asked:
             return
-        self._asked = (inputs, previewing)
-        self._warps.request(_Request(inputs, _Kind.PREVIEW if previewing else _Kind.REST))
+        self._asked = (inputs, previewing, overlay)
+        kind = _Kind.PREVIEW if previewing else _Kind.REST
+        self._warps.request(_Request(inputs, kind, overlay=overlay))
 
     def _inputs(self) -> WarpInputs:
         """Return what the warp depends on, with a stand-in where drawing in full is slow."""
@@ -181,9 +179,37 @@ class Presenter:
         editor = self._editor
         self._table.show_selection(editor.selection)
         for side, viewport in self._viewports.items():
+            self.ghosts[side] = self._ghost(side)
             viewport.show_scene(
-                scene_of(side, editor.session, editor.selection, editor.view, self.result)
+                scene_of(
+                    side,
+                    editor.session,
+                    editor.selection,
+                    editor.view,
+                    self.result,
+                    self.ghosts[side],
+                )
             )
+        if self._asked is not None and self._asked[2] is not editor.view.overlay_kind:
+            self._ask()
+
+    def _ghost(self, side: Side) -> Ghost | None:
+        """Predict where the next landmark of a side should be, on that side's surface."""
+        editor, result = self._editor, self.result
+        surface = self._surface(editor.session.mesh(side))
+        if surface is None or result is None or editor.is_previewing:
+            return None
+        name = self.requests.target(side)
+        landmark = editor.session.landmark(name) if name else None
+        key = (side, landmark, result)
+        if self._ghost_keys.get(side) != key:
+            self._ghost_keys[side] = key
+            ghost = ghost_of(landmark, side, result)
+            if ghost is not None:
+                place, _ = surface.closest(ghost.position)
+                ghost = replace(ghost, position=as_position(place))
+            self._known_ghosts[side] = ghost
+        return self._known_ghosts[side]
 
     def _warp(self, request: _Request) -> _Shaded:
         """Solve and shade; runs in the worker."""
@@ -191,20 +217,25 @@ class Presenter:
             return _Shaded(self.solver.refine(request.result), request.kind)
         inputs = request.inputs
         solve = self.solver.preview if request.kind is _Kind.PREVIEW else self.solver.solve
-        result = solve(inputs)
+        warped = request.overlay is OverlayKind.WARP
+        result = as_shown(solve(inputs), request.overlay)
         return _Shaded(
             result,
             request.kind,
             (
-                self._shade(result, inputs.mesh, result.vertices),
-                self._shade(result, inputs.stand_in, result.stand_in),
+                self._shade(result, inputs.mesh, result.vertices, warped),
+                self._shade(result, inputs.stand_in, result.stand_in, warped),
             ),
         )
 
     def _shade(
-        self, result: WarpResult, mesh: Mesh | None, vertices: NDArray[np.float32] | None
+        self,
+        result: WarpResult,
+        mesh: Mesh | None,
+        vertices: NDArray[np.float32] | None,
+        warped: bool,
     ) -> OverlayWarp | None:
-        if mesh is None or vertices is None or result.spline is None:
+        if mesh is None or vertices is None:
             return None
         shown = self._shown.get(mesh)
         if shown is not None and shown.vertices is vertices:
@@ -212,7 +243,8 @@ class Presenter:
         normals = shading_normals(triangles(vertices, mesh.faces))
         # The warped surface shows its inside when it did so before, or when the warp mirrors it.
         whole = self._surface(result.inputs.mesh)
-        mirrored = bool(np.linalg.det(result.spline.affine[1:]) < 0)
+        affine = result.spline.affine[1:] if warped and result.spline is not None else np.eye(3)
+        mirrored = bool(np.linalg.det(affine) < 0)
         inside_out = (whole is not None and whole.inside_out) != mirrored
         self._shown[mesh] = OverlayWarp(mesh, vertices, normals, inside_out)
         return self._shown[mesh]
@@ -241,19 +273,7 @@ class Presenter:
     def _on_failure(self, error: Exception) -> None:
         raise error
 
-    # From requests to edits
-
-    def _on_place(self, side: Side, position: NDArray) -> None:
-        session, name = edits.place(self._editor.committed, side, as_position(position))
-        self._editor.commit(session, f"Place {name}")
-        self._editor.select(name, side=side)
-
-    def _on_drag(self, name: str, side: Side, position: NDArray) -> None:
-        self._editor.select(name, side=side)
-        self._editor.preview(edits.move(self._editor.committed, name, side, as_position(position)))
-
-    def _on_drop(self, name: str, _side: Side) -> None:
-        self._editor.commit(self._editor.session, f"Move {name}")
+    # The penalty
 
     def _on_penalty(self, penalty: float) -> None:
         session = edits.set_penalty(self._editor.committed, penalty)
@@ -266,30 +286,3 @@ class Presenter:
     def _on_planar(self, planar: bool) -> None:
         label = "Treat as planar" if planar else "Do not treat as planar"
         self._editor.commit(edits.set_planar(self._editor.committed, planar), label)
-
-    def delete_side(self) -> None:
-        """Delete the selected landmarks' position on the selected side."""
-        editor, session = self._editor, self._editor.committed
-        side = editor.selection.side
-        for name in editor.selection.names:
-            landmark = session.landmark(name)
-            if landmark is None:
-                continue
-            # A half-placed landmark has only one position that can be meant.
-            there = landmark.position(side) is not None
-            session = edits.remove_side(session, name, side if there else side.other)
-        editor.commit(session, f"Delete position of {self._selected_words()}")
-
-    def delete_landmarks(self) -> None:
-        """Delete the selected landmarks on both sides."""
-        names = self._editor.selection.names
-        label = f"Delete {self._selected_words()}"
-        self._editor.commit(edits.remove(self._editor.committed, names), label)
-
-    def _selected_words(self) -> str:
-        names = self._editor.selection.names
-        return names[0] if len(names) == 1 else f"{len(names)} landmarks"
-
-    def complain(self, text: str) -> None:
-        """Say what is wrong with something the user just typed; the window shows it."""
-        self._panel.window().statusBar().showMessage(text, 8000)

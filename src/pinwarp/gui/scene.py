@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pinwarp.core.landmarks import Landmark, LandmarkState, Position, Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.session.editor import Selection, ViewState
+from pinwarp.session.ghost import Ghost
 from pinwarp.session.results import WarpResult
 from pinwarp.session.session import Session
 
@@ -33,6 +34,11 @@ class Scene:
     overlay_visible: bool = False
     overlay_opacity: float = 0.5
     hint: str = ""
+    ghost: Ghost | None = None
+    unit: str = ""
+    marker_radius: float = 6.0
+    wireframe: bool = False
+    section: float | None = None
 
 
 _EMPTY_HINTS = {
@@ -48,6 +54,7 @@ def scene_of(
     selection: Selection,
     view: ViewState,
     result: WarpResult | None,
+    ghost: Ghost | None = None,
 ) -> Scene:
     """Say what a viewport shows.
 
@@ -77,7 +84,12 @@ def scene_of(
         markers=tuple(markers),
         overlay_visible=side is Side.DESTINATION and view.overlay,
         overlay_opacity=view.opacity,
+        ghost=ghost,
         hint="" if session.mesh(side) is not None else _EMPTY_HINTS[side],
+        unit=session.unit,
+        marker_radius=view.marker_radius,
+        wireframe=view.wireframe,
+        section=view.section,
     )
 
 
@@ -95,6 +107,6 @@ def _marker(
         position=position,
         state=landmark.state,
         selected=selected,
-        labelled=selected or landmark.name == view.hovered,
-        movable=movable,
+        labelled=selected or landmark.name in (view.hovered, view.guided),
+        movable=movable and not view.locked and not landmark.locked,
     )

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+
 import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
@@ -14,8 +17,8 @@ from pinwarp.core.mesh import Mesh
 # Never 0: a ray through an exact edge would fall between two triangles.
 TOLERANCE = 1e-9
 # Meshes above this many triangles get a stand-in of about that many for while things move.
-LARGE = 150_000
-STAND_IN = 40_000
+LARGE = 40_000
+STAND_IN = 16_000
 
 
 class Surface:
@@ -52,6 +55,15 @@ class Surface:
             start, end, TOLERANCE, t, where, local, sub, cell
         )
         return np.array(where) if hit else None
+
+    def closest(self, point: Sequence[float] | NDArray) -> tuple[NDArray, float]:
+        """Return the place on the surface nearest to a point, and how far off it is."""
+        where = [0.0] * 3
+        sub, cell, squared = reference(0), reference(0), reference(0.0)
+        self._locator.FindClosestPoint(  # type: ignore[call-overload]  # stubs miss references
+            tuple(point), where, cell, sub, squared
+        )
+        return np.array(where), math.dist(point, where)
 
     def hides(self, eye: NDArray, point: NDArray) -> bool:
         """Whether the surface lies between the eye and a point (points on it are seen)."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from qtpy.QtCore import QEvent, QPointF, Qt, QTimer, Signal
 from qtpy.QtGui import QDragEnterEvent, QDropEvent, QKeyEvent, QMouseEvent, QWheelEvent
 from qtpy.QtWidgets import QWidget
@@ -19,6 +20,12 @@ SLOP = 4
 REACH = 10
 # The wheel has come to rest when no notch came for this long.
 ZOOM_REST_MS = 250
+_ARROWS = {
+    Qt.Key.Key_Left: (-1, 0),
+    Qt.Key.Key_Right: (1, 0),
+    Qt.Key.Key_Up: (0, 1),
+    Qt.Key.Key_Down: (0, -1),
+}
 
 
 @dataclass
@@ -39,6 +46,8 @@ class Viewport(Canvas):
     """
 
     surface_clicked = Signal(object)
+    surface_ctrl_clicked = Signal(object)
+    nudged = Signal(int, int)
     background_clicked = Signal()
     landmark_clicked = Signal(str)
     landmark_dragged = Signal(str, object)
@@ -94,7 +103,12 @@ class Viewport(Canvas):
             super().mouseMoveEvent(event)
             return
         press.dragging = True
-        position = self.pick(event.position() + press.offset)
+        at = event.position() + press.offset
+        if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
+            # Off the surface: a femoral head's centre lies inside the bone.
+            position: NDArray | None = self.in_view_plane(at, np.array(press.marker.position))
+        else:
+            position = self.pick(at)
         if position is not None:
             self.landmark_dragged.emit(press.marker.name, position)
 
@@ -113,7 +127,8 @@ class Viewport(Canvas):
         elif press.marker is not None:
             self.landmark_clicked.emit(press.marker.name)
         elif (position := self.pick(press.at)) is not None:
-            self.surface_clicked.emit(position)
+            with_ctrl = bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
+            (self.surface_ctrl_clicked if with_ctrl else self.surface_clicked).emit(position)
         else:
             self.background_clicked.emit()
 
@@ -181,8 +196,12 @@ class Viewport(Canvas):
         if event.key() == Qt.Key.Key_Escape and self._is_dragging:
             self._press = None
             self.drag_cancelled.emit()
-            return
-        event.ignore()
+        elif event.key() in _ARROWS:
+            steps = 10 if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 1
+            across, upwards = _ARROWS[event.key()]
+            self.nudged.emit(across * steps, upwards * steps)
+        else:
+            event.ignore()
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
         """Keep VTK out of it."""

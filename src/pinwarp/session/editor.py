@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from pathlib import Path
 
 from psygnal import Signal
 
 from pinwarp.core.landmarks import Side
+from pinwarp.session.edits import NAME_PATTERN
 from pinwarp.session.history import History
 from pinwarp.session.session import Session
 
@@ -20,13 +22,62 @@ class Selection:
     side: Side = Side.SOURCE
 
 
+class LinkMode(StrEnum):
+    """How the cameras of the two sides move together."""
+
+    LINKED = "linked"
+    ROTATION = "rotation only"
+    FREE = "free"
+
+
+class OverlayKind(StrEnum):
+    """What moves the source over the destination; what is exported is always the warp."""
+
+    WARP = "warp"
+    RIGID = "rigid fit"
+    SIMILARITY = "similarity fit"
+
+
 @dataclass(frozen=True)
 class ViewState:
-    """How the session is looked at: not undone, not part of what is saved."""
+    """How the session is looked at and worked on: not undone, not part of what is saved.
+
+    Parameters
+    ----------
+    overlay, opacity
+        Whether and how the warped source is drawn.
+    hovered
+        The landmark under the mouse.
+    locked
+        Whether all landmarks are frozen.
+    guided
+        The landmark that the guide asks for; None without a guide.
+    name_pattern
+        What new landmarks are called.
+    nudge
+        How far an arrow key moves a landmark, in mesh units; None for a share of the bone.
+    link
+        How the cameras of the two sides move together.
+    marker_radius
+        Of the landmarks' signs, in logical pixels.
+    wireframe
+        Whether the bones are drawn as edges only.
+    section
+        Share of the depth that the cross-section clips away; None without a cross-section.
+    """
 
     overlay: bool = True
+    overlay_kind: OverlayKind = OverlayKind.WARP
     opacity: float = 0.55
     hovered: str | None = None
+    locked: bool = False
+    guided: str | None = None
+    name_pattern: str = NAME_PATTERN
+    nudge: float | None = None
+    link: LinkMode = LinkMode.LINKED
+    marker_radius: float = 6.0
+    wireframe: bool = False
+    section: float | None = None
 
 
 class Editor:

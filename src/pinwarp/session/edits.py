@@ -16,19 +16,29 @@ from pinwarp.session.session import Session
 UNITS = ("mm", "cm", "m")
 # A mesh with a shorter diagonal is taken to be in metres.
 LARGEST_IN_METRES = 3.0
-_AUTOMATIC = re.compile(r"landmark_(\d+)")
+NAME_PATTERN = "landmark_{n}"
+PASSENGER_PATTERN = "passenger_{n}"
+# Names that nobody chose: such a landmark may go with its last side.
+_AUTOMATIC = re.compile(r"(landmark|passenger)_\d+")
 
 
-def next_name(session: Session) -> str:
+def next_name(session: Session, pattern: str = NAME_PATTERN) -> str:
     """Return the name that the next new landmark gets.
+
+    Parameters
+    ----------
+    pattern
+        Holds ``{n}`` where the number goes.
 
     Examples
     --------
     >>> next_name(Session(landmarks=(Landmark("landmark_4"), Landmark("fovea"))))
     'landmark_5'
     """
-    matches = (_AUTOMATIC.fullmatch(landmark.name) for landmark in session.landmarks)
-    return f"landmark_{max((int(m[1]) for m in matches if m), default=-1) + 1}"
+    before, _, after = pattern.partition("{n}")
+    numbered = re.compile(re.escape(before) + r"(\d+)" + re.escape(after))
+    matches = (numbered.fullmatch(landmark.name) for landmark in session.landmarks)
+    return f"{before}{max((int(m[1]) for m in matches if m), default=-1) + 1}{after}"
 
 
 def next_to_place(session: Session, side: Side) -> str | None:
@@ -39,19 +49,40 @@ def next_to_place(session: Session, side: Side) -> str | None:
     return None
 
 
-def place(session: Session, side: Side, position: Position) -> tuple[Session, str]:
-    """Place a landmark: the first that lacks this side, else a new one.
+def place(
+    session: Session,
+    side: Side,
+    position: Position,
+    *,
+    target: str | None = None,
+    pattern: str = NAME_PATTERN,
+) -> tuple[Session, str]:
+    """Place a landmark: the one that is asked for, else the first that lacks this side, else new.
+
+    Parameters
+    ----------
+    target
+        The landmark that is asked for, if any.
+    pattern
+        What a new one is called; see :func:`next_name`.
 
     Returns
     -------
     session, name
         The changed session, and which landmark was placed.
     """
-    name = next_to_place(session, side)
+    name = target or next_to_place(session, side)
     if name is not None:
         return move(session, name, side, position), name
-    name = next_name(session)
+    name = next_name(session, pattern)
     landmark = Landmark(name).placed(side, position)
+    return replace(session, landmarks=(*session.landmarks, landmark)), name
+
+
+def add_passenger(session: Session, position: Position) -> tuple[Session, str]:
+    """Add a passenger on the source; it is carried by the warp but not solved for."""
+    name = next_name(session, PASSENGER_PATTERN)
+    landmark = Landmark(name, role=Role.PASSENGER).placed(Side.SOURCE, position)
     return replace(session, landmarks=(*session.landmarks, landmark)), name
 
 

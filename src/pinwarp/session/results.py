@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.factor import SourceFactor, factorise
-from pinwarp.core.landmarks import Position, Role, Side, positions
+from pinwarp.core.landmarks import Landmark, Position, Role, Side, positions
 from pinwarp.core.live import Influence, PenaltySweep, PreviewPoints, can_follow, preview
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import PenaltyConvention, Spline, solve
@@ -294,11 +294,38 @@ def warped_mesh(session: Session) -> Mesh:
     mesh = session.mesh(Side.SOURCE)
     if mesh is None:
         raise PinwarpError("There is no source mesh to warp: open one first.")
+    return mesh.with_vertices(session_spline(session).evaluate(mesh.vertices))
+
+
+def warped_passengers(session: Session) -> tuple[Landmark, ...]:
+    """Return the passengers with the positions that the warp carries them to as destinations.
+
+    Raises
+    ------
+    PinwarpError
+        When there is no passenger, no pair, or the solve fails; the message says what to do.
+    """
+    passengers = [x for x in session.landmarks if x.role is Role.PASSENGER and x.source is not None]
+    if not passengers:
+        raise PinwarpError("There is no passenger: Ctrl+click on the source adds one.")
+    carried = session_spline(session).evaluate(positions(passengers, Side.SOURCE))
+    return tuple(
+        passenger.placed(Side.DESTINATION, place)
+        for passenger, place in zip(passengers, carried, strict=True)
+    )
+
+
+def session_spline(session: Session) -> Spline:
+    """Return the warp of a session, solved anew.
+
+    Raises
+    ------
+    PinwarpError
+        When there is no pair, or the solve fails.
+    """
     pairs = session.pairs
     if not pairs:
         raise PinwarpError("There is no pair yet: place a landmark on both meshes first.")
     factor = factorise(positions(pairs, Side.SOURCE), planar=session.planar)
-    spline = solve(
-        factor, positions(pairs, Side.DESTINATION), session.warping_penalty, session.convention
-    )
-    return mesh.with_vertices(spline.evaluate(mesh.vertices))
+    destination = positions(pairs, Side.DESTINATION)
+    return solve(factor, destination, session.warping_penalty, session.convention)

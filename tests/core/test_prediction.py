@@ -1,0 +1,198 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.distance import cdist
+from tests.core.strategies import landmark_pairs
+
+from pinwarp.core.errors import LandmarkError, PenaltyError
+from pinwarp.core.prediction import inverse_warp, prediction_of
+from pinwarp.core.spline import PenaltyConvention, factorise, identity, solve
+
+
+def extent(points):
+    return float(np.linalg.norm(np.ptp(points, axis=0)))
+
+
+def around(source, count=60):
+    low, high = source.min(axis=0), source.max(axis=0)
+    wide = 0.5 * (high - low)
+    return np.random.default_rng(1).uniform(low - wide, high + wide, (count, 3))
+
+
+def by_the_bordered_matrix(source, destination, penalty, points, axes=3):
+    """The formula to the letter, in coordinates of about 1."""
+    centre, size = source.mean(axis=0), extent(source)
+    u, v = (source - centre) / size, (points - centre) / size
+    M = np.zeros((len(u) + axes + 1,) * 2)
+    P = np.column_stack([np.ones(len(u)), u[:, :axes]])
+    M[: len(u), : len(u)] = penalty / size * np.eye(len(u)) - cdist(u, u)
+    M[: len(u), len(u) :], M[len(u) :, : len(u)] = P, P.T
+    inverse = np.linalg.inv(M)
+    G = inverse[: len(u), : len(u)]
+    sigma2 = np.mean((G @ destination) ** 2 / np.diag(G)[:, None])
+    cp = np.column_stack([-cdist(v, u), np.ones(len(v)), v[:, :axes]])
+    return np.sqrt(sigma2 * np.maximum(0, -np.einsum("mi,ij,mj->m", cp, inverse, cp)))
+
+
+@given(landmark_pairs(least=6), st.sampled_from([0.0, 0.01, 1.0, 100.0]))
+def test_it_is_the_formula_of_the_bordered_matrix(pairs, share):
+    source, destination = pairs
+    penalty, points = share * extent(source), around(source)
+    expected = by_the_bordered_matrix(source, destination, penalty, points)
+    ours = prediction_of(factorise(source), destination, penalty).standard_deviation(points)
+    assert np.abs(ours - expected).max() <= 1e-9 * expected.max()
+
+
+@given(landmark_pairs(least=6))
+def test_the_landmarks_are_certain_at_penalty_zero(pairs):
+    source, destination = pairs
+    prediction = prediction_of(factorise(source), destination, 0.0)
+    at_landmarks = prediction.standard_deviation(source)
+    assert (at_landmarks >= 0).all()
+    # A square root: sixteen digits of the variance leave eight.
+    assert at_landmarks.max() <= 1e-6 * prediction.standard_deviation(around(source)).max()
+
+
+@given(landmark_pairs(least=6), st.sampled_from([1e-3, 25.4]), st.floats(0, 2))
+def test_a_change_of_unit_changes_only_the_unit(pairs, factor, share):
+    source, destination = pairs
+    penalty, points = share * extent(source), around(source)
+    plain = prediction_of(factorise(source), destination, penalty).standard_deviation(points)
+    scaled = prediction_of(factorise(source * factor), destination * factor, penalty * factor)
+    assert np.allclose(scaled.standard_deviation(points * factor), factor * plain, rtol=1e-6)
+
+
+@given(landmark_pairs(least=6))
+def test_an_infinite_penalty_is_the_affine_regression_and_the_limit_of_large_ones(pairs):
+    source, destination = pairs
+    points = around(source)
+    factor = factorise(source)
+    P, p = (np.column_stack([np.ones(len(x)), x - source.mean(axis=0)]) for x in (source, points))
+    hat = P @ np.linalg.pinv(P)
+    residual = destination - hat @ destination
+    sigma2 = np.mean(residual**2 / (1 - np.diag(hat))[:, None])
+    expected = np.sqrt(sigma2 * np.einsum("mi,ij,mj->m", p, np.linalg.inv(P.T @ P), p))
+    at_infinity = prediction_of(factor, destination, np.inf).standard_deviation(points)
+    nearly = prediction_of(factor, destination, 1e9 * extent(source)).standard_deviation(points)
+    assert np.allclose(at_infinity, expected, rtol=1e-6)
+    assert np.allclose(nearly, at_infinity, rtol=1e-5)
+
+
+@pytest.mark.parametrize("axes", [1, 2])
+@pytest.mark.parametrize("penalty", [0.0, 0.3])
+def test_a_line_or_a_plane_of_landmarks_is_free_only_within(axes, penalty):
+    rng = np.random.default_rng(axes)
+    source = np.zeros((9, 3))
+    source[:, :axes] = rng.normal(size=(9, axes))
+    destination = source + 0.1 * rng.normal(size=source.shape)
+    points = rng.normal(size=(40, 3))
+    expected = by_the_bordered_matrix(source, destination, penalty, points, axes)
+    ours = prediction_of(factorise(source), destination, penalty).standard_deviation(points)
+    # The similarity that is taken off first lies in the span of the affine part.
+    assert np.allclose(ours, expected, rtol=1e-9)
+    at_infinity = prediction_of(factorise(source), destination, np.inf)
+    assert np.isfinite(at_infinity.standard_deviation(points)).all()
+
+
+def test_duplicates_do_not_spoil_it():
+    rng = np.random.default_rng(3)
+    source, points = rng.normal(size=(9, 3)), rng.normal(size=(40, 3))
+    destination = source + 0.1 * rng.normal(size=source.shape)
+    twice = prediction_of(
+        factorise(np.vstack([source, source[4]])), np.vstack([destination, destination[4]]), 0.0
+    )
+    once = prediction_of(factorise(source), destination, 0.0)
+    ratio = twice.standard_deviation(points) / once.standard_deviation(points)
+    # One more pair changes sigma alone.
+    assert np.allclose(ratio, ratio[0])
+    assert 0.5 < ratio[0] < 2
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4])
+def test_with_four_pairs_or_fewer_there_is_nothing_to_go_by(count):
+    source = np.random.default_rng(0).normal(size=(count, 3))
+    assert prediction_of(factorise(source), source, 0.0) is None
+
+
+def test_three_pairs_at_one_place_give_nothing_to_go_by():
+    assert prediction_of(factorise(np.ones((3, 3))), np.ones((3, 3)), 0.0) is None
+
+
+def test_a_bone_that_an_affine_map_explains_is_certain_everywhere():
+    source = np.random.default_rng(0).normal(size=(12, 3))
+    prediction = prediction_of(factorise(source), 2 * source + 7, 0.1)
+    assert prediction.standard_deviation(around(source)).max() < 1e-12
+
+
+def test_what_cannot_be_used_is_refused():
+    factor = factorise(np.random.default_rng(0).normal(size=(6, 3)))
+    with pytest.raises(LandmarkError, match="6 source landmarks but 2"):
+        prediction_of(factor, np.zeros((2, 3)), 0.0)
+    with pytest.raises(PenaltyError, match="0 or more"):
+        prediction_of(factor, factor.source, -1.0)
+    prediction = prediction_of(factor, factor.source + np.eye(6, 3), 0.0)
+    with pytest.raises(LandmarkError, match="row 0"):
+        prediction.standard_deviation([[np.nan, 0, 0]])
+    assert prediction.standard_deviation(np.zeros((0, 3))).shape == (0,)
+
+
+# The way back
+
+
+@given(landmark_pairs(least=4), st.floats(0, 1))
+def test_the_way_there_and_back_ends_where_it_began(pairs, share):
+    source, destination = pairs
+    # Gentle enough to have an inverse.
+    destination = source + 0.1 * (destination - destination.mean(axis=0))
+    spline = solve(factorise(source), destination, share * extent(source))
+    points = np.vstack([around(source), source])
+    targets = spline.evaluate(points)
+    places, found = inverse_warp(spline, targets)
+    missed = np.linalg.norm(spline.evaluate(places) - targets, axis=1)
+    assert (missed[found] <= 1e-8 * extent(destination)).all()
+    assert found.mean() > 0.8
+
+
+def test_every_place_of_a_smooth_warp_is_found():
+    rng = np.random.default_rng(5)
+    source = rng.uniform(-100, 100, (30, 3)) + 1000
+    destination = source + 5 * np.sin(source[:, [1, 2, 0]] / 40)
+    spline = solve(factorise(source), destination)
+    points = np.vstack([rng.uniform(900, 1100, (500, 3)), source])
+    places, found = inverse_warp(spline, spline.evaluate(points))
+    assert found.all()
+    assert np.abs(places - points).max() < 1e-6
+
+
+@given(landmark_pairs(least=5), st.sampled_from(["flat", "folded", "poles"]))
+def test_a_warp_without_an_inverse_says_so_and_stays_finite(pairs, how):
+    source, destination = pairs
+    factor = factorise(source)
+    penalty, convention = 0.0, PenaltyConvention.REGULARISING
+    if how == "flat":
+        destination = destination * [1, 1, 0]
+    elif how == "folded":
+        destination = destination[::-1]
+    elif len(factor.poles):
+        penalty, convention = 1.0001 * float(factor.poles[0]), PenaltyConvention.OPYNSIM
+    spline = solve(factor, destination, penalty, convention)
+    targets = around(destination, 20) + np.array([0, 0, extent(source)])
+    places, found = inverse_warp(spline, targets)
+    assert np.isfinite(places).all()
+    assert found.dtype == bool
+    missed = np.linalg.norm(spline.evaluate(places) - targets, axis=1)
+    reach = extent(spline.evaluate(source))
+    assert (missed[found] <= 1e-8 * (reach + np.abs(targets).max())).all()
+    if how == "flat":
+        assert not found.any()
+
+
+def test_one_pair_and_no_pair_are_inverted_too():
+    places, found = inverse_warp(solve(factorise([[1, 2, 3]]), [[2, 2, 3]]), [[5, 5, 5]])
+    assert found.all()
+    assert np.allclose(places, [[4, 5, 5]])
+    assert np.allclose(inverse_warp(identity(), [[5, 6, 7]])[0], [[5, 6, 7]])
+    assert inverse_warp(identity(), np.zeros((0, 3)))[0].shape == (0, 3)
