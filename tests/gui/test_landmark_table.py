@@ -273,8 +273,8 @@ def test_the_menu_makes_a_passenger_and_a_pair_again(four):
     four.table.customContextMenuRequested.emit(four.cell("a9").center())
     four.choose(four.panel.row_menu, "Make Pair")
     assert four.session == before
-    four.undo("Make a9 pair")
-    four.undo("Make a9 passenger")
+    four.undo("Make a9 a pair")
+    four.undo("Make a9 a passenger")
 
 
 def test_the_menu_offers_everything_with_its_key(four):
@@ -424,6 +424,13 @@ def test_coordinates_come_and_go_and_the_names_get_the_rest(four):
     four.user.trigger("show_coordinates")
     assert table.isColumnHidden(column_number("source_x"))
     assert header.sectionSize(0) == before
+    for text in ("a", "zzz", ""):
+        four.panel.filter.setText(text)
+        four.click_header("name")
+        four.user.settle()
+        assert header.sectionSize(0) == before
+    header.resizeSection(column_number("residual"), 90)
+    four.user.settle()
     assert header.length() == table.viewport().width()
 
 

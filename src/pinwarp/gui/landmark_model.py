@@ -18,7 +18,13 @@ from pinwarp.session.results import WarpResult
 from pinwarp.session.session import Session
 
 _ROWS_MIME = "application/x-pinwarp-landmarks"
-_NAME = column_number(NAME)
+# Made once: Qt asks for them cell by cell whenever the selection changes.
+_BETWEEN_ROWS = Qt.ItemFlag.ItemIsDropEnabled
+_PLAIN_CELL = (
+    Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable | Qt.ItemFlag.ItemIsDragEnabled
+)
+_TYPED_CELL = _PLAIN_CELL | Qt.ItemFlag.ItemIsEditable
+_TICKED_CELL = _TYPED_CELL | Qt.ItemFlag.ItemIsUserCheckable
 
 
 class LandmarkModel(QAbstractTableModel):
@@ -178,16 +184,14 @@ class LandmarkModel(QAbstractTableModel):
     def flags(self, index: QModelIndex) -> Qt.ItemFlag:
         """Return what can be done with a cell."""
         if not index.isValid():
-            # Between the rows: where rows can be dropped.
-            return Qt.ItemFlag.ItemIsDropEnabled
-        column, row = COLUMNS[index.column()], self.row(index.row())
-        flags = Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable
-        flags |= Qt.ItemFlag.ItemIsDragEnabled
-        if column.edit is not None and column.can_edit(row):
-            flags |= Qt.ItemFlag.ItemIsEditable
+            return _BETWEEN_ROWS
+        column = COLUMNS[index.column()]
+        if column.edit is None:
+            return _PLAIN_CELL
+        row = self.row(index.row())
         if column.checked is not None and column.checked(row) is not None:
-            flags |= Qt.ItemFlag.ItemIsUserCheckable
-        return flags
+            return _TICKED_CELL
+        return _TYPED_CELL if column.can_edit(row) else _PLAIN_CELL
 
     def data(self, index: QModelIndex, role: int = 0) -> Any:
         """Return what a cell shows."""

@@ -10,6 +10,7 @@ from qtpy.QtCore import (
     QPoint,
     QRect,
     Qt,
+    QTimer,
     Signal,
 )
 from qtpy.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
@@ -81,7 +82,10 @@ class LandmarkTable(QTableView):
         header.setSortIndicator(-1, Qt.SortOrder.AscendingOrder)
         self.setSortingEnabled(True)
         self.show_coordinates(False)
-        header.sectionResized.connect(lambda *_: self._fit_name())
+        # Later: while rows are sorted Qt lays the sections out anew, one after the other.
+        self._fit_later = QTimer(self, singleShot=True, interval=0)
+        self._fit_later.timeout.connect(self._fit_name)
+        header.sectionResized.connect(lambda *_: None if self._fitting else self._fit_later.start())
         header.sortIndicatorChanged.connect(lambda *_: self._on_order())
 
     def _set_up_dragging(self) -> None:
@@ -164,7 +168,7 @@ class LandmarkTable(QTableView):
             if landmark.name in wanted
         )
         rows = sorted(index.row() for index in indexes if index.isValid())
-        if sorted(index.row() for index in selector.selectedRows()) == rows:
+        if self._selected_rows() == rows:
             return
         chosen = QItemSelection()
         for row in rows:
@@ -180,9 +184,13 @@ class LandmarkTable(QTableView):
                 selector.setCurrentIndex(first, flags.NoUpdate)
         self._rendering = False
 
+    def _selected_rows(self) -> list[int]:
+        # Qt's own selectedRows() asks for the flags of every cell: 50 ms for 500 rows.
+        ranges = self.selectionModel().selection()
+        return sorted({row for r in ranges for row in range(r.top(), r.bottom() + 1)})
+
     def _selected_names(self) -> list[str]:
-        rows = sorted(self.selectionModel().selectedRows(), key=QModelIndex.row)
-        return [self.order.landmark(index).name for index in rows]
+        return [self.order.landmark(self.order.index(row, 0)).name for row in self._selected_rows()]
 
     def _on_selected(self) -> None:
         if self._rendering or self._model.is_updating:

@@ -207,7 +207,7 @@ class TablePresenter:
         chosen = self._selected()
         role = Role.PAIR if _all_passengers(chosen) else Role.PASSENGER
         names = [mark.name for mark in chosen]
-        kind = role.value if len(names) == 1 else f"{role.value}s"
+        kind = f"a {role.value}" if len(names) == 1 else f"{role.value}s"
         self._try(
             lambda session: edits.set_role(session, names, role), f"Make {_words(names)} {kind}"
         )

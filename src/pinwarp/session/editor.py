@@ -205,6 +205,7 @@ class Editor:
             self.view_changed.emit(view)
 
     def _announce(self) -> None:
-        kept = tuple(n for n in self.selection.names if self.session.index_of(n) is not None)
+        there = {landmark.name for landmark in self.session.landmarks}
+        kept = tuple(name for name in self.selection.names if name in there)
         self.select(*kept)
         self.session_changed.emit(self.session)
