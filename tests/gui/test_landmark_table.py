@@ -165,7 +165,7 @@ def test_a_disabled_pair_stays_dimmed_and_out_under_sorting_and_filtering(four):
     assert colour.name() == "#8b919a"
     assert [x.name for x in four.session.pairs] == ["a10", "a9"]
     four.click("b")
-    four.press(Qt.Key.Key_Space)
+    four.press(Qt.Key.Key_D, CONTROL)
     assert four.session.landmark("b").enabled
 
 
@@ -414,6 +414,24 @@ def test_the_coordinates_of_a_locked_landmark_cannot_be_typed(four):
     four.user.trigger("show_coordinates")
     four.click("a9", "locked")
     assert four.double_click("a9", "source_x") is None
+
+
+def test_while_all_are_frozen_nothing_moves_by_typing_or_pasting(four):
+    before = four.session
+    four.click("a9")
+    four.press(Qt.Key.Key_C, CONTROL)
+    four.user.editor.look(locked=True)
+    four.user.trigger("show_coordinates")
+    line = four.double_click("a9", "source_x")
+    QTest.keyClicks(line, "5")
+    QTest.keyClick(line, Qt.Key.Key_Return)
+    four.user.settle()
+    assert "locked" in four.said()
+    text = QGuiApplication.clipboard().text()
+    QGuiApplication.clipboard().setText(text.replace("4.0", "7.0"))
+    four.press(Qt.Key.Key_V, CONTROL)
+    assert "locked" in four.user.dialogs.told[0][1]
+    assert four.session == before
 
 
 def test_coordinates_come_and_go_and_the_names_get_the_rest(four):

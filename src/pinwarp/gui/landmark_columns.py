@@ -146,7 +146,7 @@ def _tick(row: Row) -> bool | None:
 
 
 def _lock_icon(row: Row) -> QIcon:
-    return kept_icon("lock" if row.landmark.locked else "unlock")
+    return kept_icon("locked" if row.landmark.locked else "unlock")
 
 
 @functools.cache
@@ -284,7 +284,7 @@ COLUMNS: tuple[Column, ...] = (
         sort_key=lambda row: not row.landmark.locked,
         cell_tip=_lock_tip,
         icon=_lock_icon,
-        header_icon="lock",
+        header_icon="locked",
     ),
 )
 

@@ -223,7 +223,8 @@ class LandmarkRequests:
             for name in editor.selection.names
             if (landmark := session.landmark(name)) and not self._is_locked(landmark)
         ]
-        editor.commit(edits.remove(session, free), f"Delete {self._selected_words()}")
+        words = free[0] if len(free) == 1 else f"{len(free)} landmarks"
+        editor.commit(edits.remove(session, free), f"Delete {words}")
 
     def _selected_words(self) -> str:
         names = self._editor.selection.names

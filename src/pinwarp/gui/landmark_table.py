@@ -13,7 +13,7 @@ from qtpy.QtCore import (
     QTimer,
     Signal,
 )
-from qtpy.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
+from qtpy.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
 from qtpy.QtWidgets import QAbstractItemView, QHeaderView, QStyle, QTableView, QWidget
 
 from pinwarp.gui import theme
@@ -35,7 +35,6 @@ class LandmarkTable(QTableView):
 
     selection_requested = Signal(list, object)
     lock_requested = Signal(list, bool)
-    toggle_requested = Signal()
     refused = Signal(str)
 
     def __init__(self, model: LandmarkModel, parent: QWidget | None = None) -> None:
@@ -233,20 +232,6 @@ class LandmarkTable(QTableView):
             self.mousePressEvent(event)
         else:
             super().mouseDoubleClickEvent(event)
-
-    def event(self, event: QEvent) -> bool:
-        """Claim Space, which accepts the ghost everywhere else in the window."""
-        if event.type() == QEvent.Type.ShortcutOverride and event.key() == Qt.Key.Key_Space:
-            event.accept()
-            return True
-        return super().event(event)
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Space turns the ticks of all selected rows, not only of the current one."""
-        if event.key() == Qt.Key.Key_Space and not event.modifiers():
-            self.toggle_requested.emit()
-        else:
-            super().keyPressEvent(event)
 
     def changeEvent(self, event: QEvent) -> None:
         """Keep the columns wide enough for another font."""

@@ -41,6 +41,9 @@ class Scene:
     section: float | None = None
 
 
+# With more of them selected, their labels would hide the bone.
+MOST_LABELS = 12
+
 _EMPTY_HINTS = {
     Side.SOURCE: "Drop the source mesh here\nor open it with Ctrl+1\n\n"
     "To look around first: File > Open Sample Bones",
@@ -107,6 +110,7 @@ def _marker(
         position=position,
         state=landmark.state,
         selected=selected,
-        labelled=selected or landmark.name in (view.hovered, view.guided),
+        labelled=landmark.name in (view.hovered, view.guided)
+        or (selected and len(selection.names) <= MOST_LABELS),
         movable=movable and not view.locked and not landmark.locked,
     )

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 
-from qtpy.QtGui import QAction, QGuiApplication
+from qtpy.QtGui import QAction
 from qtpy.QtWidgets import QInputDialog
 
 from pinwarp.core.errors import PinwarpError
@@ -15,13 +14,7 @@ from pinwarp.gui.landmark_columns import COLUMNS
 from pinwarp.gui.landmark_model import LandmarkModel
 from pinwarp.gui.landmark_panel import LandmarkPanel
 from pinwarp.gui.rename_dialog import RenameDialog
-from pinwarp.io.clipboard_table import (
-    ClipboardTable,
-    PastedLandmark,
-    SkippedLine,
-    clipboard_text,
-    read_clipboard,
-)
+from pinwarp.gui.spreadsheet import Spreadsheet, in_words
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.session import Session
@@ -62,13 +55,12 @@ class TablePresenter:
         self._editor = editor
         self._panel = panel
         self._actions = actions
-        self._dialogs = dialogs
         self._say = say
+        self._spreadsheet = Spreadsheet(editor, dialogs, say)
         model.edit_requested.connect(self._on_edit)
         model.enable_requested.connect(lambda name, on: self._set_enabled([name], on))
         model.reorder_requested.connect(self._on_reorder)
         panel.table.lock_requested.connect(self._set_locked)
-        panel.table.toggle_requested.connect(self.toggle_enabled)
         panel.table.refused.connect(say)
         does = {
             "rename": self.rename,
@@ -77,7 +69,7 @@ class TablePresenter:
             "toggle_enabled": self.toggle_enabled,
             "toggle_locked": self.toggle_locked,
             "toggle_role": self.toggle_role,
-            "copy": self.copy,
+            "copy": lambda: self._spreadsheet.copy(self._selected()),
             "paste": self.paste,
             "move_up": lambda: self.move_rows(-1),
             "move_down": lambda: self.move_rows(1),
@@ -141,7 +133,7 @@ class TablePresenter:
         def accept() -> None:
             self._commit_renamed(
                 lambda session: edits.rename_many(session, dialog.new_names),
-                f"Rename {_words(dialog.new_names)}",
+                f"Rename {in_words(dialog.new_names)}",
             )
 
         dialog.accepted.connect(accept)
@@ -167,7 +159,9 @@ class TablePresenter:
 
     def _on_edit(self, column: int, name: str, text: str) -> None:
         edit, label = COLUMNS[column].edit, COLUMNS[column].label
-        if edit is not None:
+        if COLUMNS[column].side is not None and self._editor.view.locked:
+            self._say("All landmarks are locked: L unlocks them.")
+        elif edit is not None:
             self._commit_renamed(lambda session: edit(session, name, text), label.format(name))
 
     def _commit_renamed(self, edit: Callable[[Session], Session], label: str) -> None:
@@ -209,21 +203,21 @@ class TablePresenter:
         names = [mark.name for mark in chosen]
         kind = f"a {role.value}" if len(names) == 1 else f"{role.value}s"
         self._try(
-            lambda session: edits.set_role(session, names, role), f"Make {_words(names)} {kind}"
+            lambda session: edits.set_role(session, names, role), f"Make {in_words(names)} {kind}"
         )
 
     def _set_enabled(self, names: Sequence[str], enabled: bool) -> None:
-        label = f"{'Enable' if enabled else 'Disable'} {_words(names)}"
+        label = f"{'Enable' if enabled else 'Disable'} {in_words(names)}"
         self._try(lambda session: edits.set_enabled(session, names, enabled), label)
 
     def _set_locked(self, names: Sequence[str], locked: bool) -> None:
-        label = f"{'Lock' if locked else 'Unlock'} {_words(names)}"
+        label = f"{'Lock' if locked else 'Unlock'} {in_words(names)}"
         self._try(lambda session: edits.set_locked(session, names, locked), label)
 
     # Order
 
     def _on_reorder(self, names: Sequence[str], row: int) -> None:
-        self._try(lambda session: edits.reorder(session, names, row), f"Reorder {_words(names)}")
+        self._try(lambda session: edits.reorder(session, names, row), f"Reorder {in_words(names)}")
 
     def move_rows(self, step: int) -> None:
         """Move the selected rows one up or down in the session's order."""
@@ -234,40 +228,14 @@ class TablePresenter:
         rows = sorted(row for name in names if (row := session.index_of(name)) is not None)
         row = max(rows[0] - 1, 0) if step < 0 else min(rows[-1] + 2, len(session.landmarks))
         moved = edits.reorder(session, names, row)
-        self._editor.commit(moved, f"Reorder {_words(names)}", f"reorder {names}")
-
-    # To and from a spreadsheet
-
-    def copy(self) -> None:
-        """Put the selected rows on the clipboard."""
-        chosen = self._selected()
-        QGuiApplication.clipboard().setText(clipboard_text(chosen))
-        self._say(f"Copied {_words([mark.name for mark in chosen])} for a spreadsheet.")
+        self._editor.commit(moved, f"Reorder {in_words(names)}", f"reorder {names}")
 
     def paste(self) -> None:
-        """Bring in rows from the clipboard, as one step, and tell which could not be read."""
-        session = self._editor.committed
-        try:
-            table = _without_locked(session, read_clipboard(QGuiApplication.clipboard().text()))
-            pasted = edits.paste(session, table.rows)
-        except PinwarpError as error:
-            self._say(str(error))
-            return
-        names = [row.name for row in table.rows]
+        """Bring in rows from the clipboard and show them."""
+        names = self._spreadsheet.paste()
         if names:
-            self._editor.commit(pasted, f"Paste {_words(names)}")
             self._panel.reveal(names)
             self._editor.select(*names)
-        if table.skipped:
-            count = len(table.skipped)
-            self._dialogs.tell(
-                "Paste landmarks",
-                f"Pasted {_words(names)}. {count} {'row' if count == 1 else 'rows'} could not be "
-                f"used, the first in line {table.skipped[0].line}: {table.skipped[0].reason}.",
-                "\n".join(f"line {x.line}: {x.reason}   ({x.text})" for x in table.skipped),
-            )
-        else:
-            self._say(f"Pasted {_words(names)}.")
 
     # The next to do
 
@@ -283,28 +251,6 @@ class TablePresenter:
                 self._say(f"{landmark.name}: {landmark.state.value}.")
                 return
         self._say("All landmarks are complete." if marks else "There are no landmarks yet.")
-
-
-def _without_locked(session: Session, table: ClipboardTable) -> ClipboardTable:
-    """Leave the positions of locked landmarks out, and say so."""
-    rows: list[PastedLandmark] = []
-    skipped = list(table.skipped)
-    locked = {mark.name: mark for mark in session.landmarks if mark.locked}
-    for row in table.rows:
-        mark = locked.get(row.name)
-        places = {"source", "destination"} & set(row.values)
-        if mark is not None and any(row.values[side] != getattr(mark, side) for side in places):
-            skipped.append(SkippedLine(row.line, row.name, "it is locked, so that it stays there"))
-            kept = {key: value for key, value in row.values.items() if key not in places}
-            rows.append(replace(row, values=kept))
-        else:
-            rows.append(row)
-    return ClipboardTable(tuple(rows), tuple(sorted(skipped, key=lambda line: line.line)))
-
-
-def _words(names: Iterable[str]) -> str:
-    names = list(names)
-    return names[0] if len(names) == 1 else f"{len(names)} landmarks"
 
 
 def _all_disabled(landmarks: Iterable[Landmark]) -> bool:
