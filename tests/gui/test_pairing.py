@@ -146,7 +146,7 @@ def test_clicking_a_table_row_selects_the_landmark_in_the_views(user, anterior_p
     user.click_position(SOURCE, anterior_pairs[0].source)
     user.click_position(SOURCE, anterior_pairs[1].source)
     table = user.window.table
-    where = table.visualRect(user.window.model.index(0, 0)).center()
+    where = table.visualRect(table.index_of("landmark_0")).center()
     user.qtbot.mouseClick(table.viewport(), Qt.MouseButton.LeftButton, pos=where)
     user.settle()
     assert user.editor.selection.names == ("landmark_0",)
@@ -265,9 +265,9 @@ def test_a_name_that_is_taken_is_refused_with_the_reason(user, anterior_pairs):
 
 def test_a_tick_in_the_table_lets_a_pair_sit_out(user):
     user.open_sample()
-    table, model = user.window.table, user.window.model
+    table = user.window.table
     before = user.window.viewports[DESTINATION].overlay_points
-    cell = table.visualRect(model.index(0, 0))
+    cell = table.visualRect(table.order.index(0, 0))
     user.qtbot.mouseClick(
         table.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(cell.left() + 10, cell.center().y())
     )

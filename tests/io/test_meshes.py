@@ -492,7 +492,7 @@ def test_any_change_to_a_file_gives_a_mesh_or_a_pinwarp_error(
     content = bytearray(original.read_bytes())
     for _ in range(random.randint(1, 3)):
         # Headers are where it hurts most.
-        place = random.randrange(random.choice([300, len(content)]))
+        place = random.randrange(random.choice([300, max(1, len(content))]))
         removed = random.choice([0, 1, 7, 0, 1, 7, len(content)])
         content[place : place + removed] = random.choice(JUNK)
     path = write(original.parent, f"changed{original.suffix}", bytes(content))

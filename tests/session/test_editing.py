@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import shutil
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,10 +18,12 @@ from pinwarp.core.errors import LandmarkError, PinwarpError
 from pinwarp.core.landmarks import Landmark, LandmarkState, Role, Side
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import PenaltyConvention
+from pinwarp.io.clipboard_table import clipboard_text, read_clipboard
 from pinwarp.io.meshes import MeshFile
 from pinwarp.io.session_file import read_session, write_session
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
+from pinwarp.session.naming import names_by_pattern
 from pinwarp.session.results import WarpInputs, WarpSolver, warped_mesh
 from pinwarp.session.session import Session, from_record, to_record
 
@@ -88,6 +91,22 @@ def test_a_landmark_that_is_not_there_is_said_so():
 
 
 # Several at once
+
+
+def test_landmarks_may_take_each_others_names_but_not_those_of_others():
+    session = Session(landmarks=tuple(map(pair, "abc")))
+    swapped = edits.rename_many(session, {"a": "b", "b": "a"})
+    assert [x.name for x in swapped.landmarks] == ["b", "a", "c"]
+    with pytest.raises(LandmarkError, match="already a landmark called c"):
+        edits.rename_many(session, {"a": "d", "b": "c"})
+    with pytest.raises(LandmarkError, match="Two landmarks would be called d"):
+        edits.rename_many(session, {"a": "d", "b": "d"})
+
+
+@pytest.mark.parametrize("pattern", ["{x}", "{", "a}", "{n:0.2f}", "{name.__class__}"])
+def test_braces_that_mean_nothing_are_refused(pattern):
+    with pytest.raises(LandmarkError, match=r"use \{name\}, \{n\} or \{n:02\}"):
+        names_by_pattern(["a"], pattern)
 
 
 def test_a_passenger_keeps_its_destination_for_the_way_back():
@@ -348,6 +367,32 @@ class EditingMachine(RuleBasedStateMachine):
             self.commit(edits.rename(self.editor.session, self.some(data), name), "rename")
         except LandmarkError:
             assert self.editor.session.index_of(name) is not None
+
+    @has_landmarks
+    @rule(data=st.data(), pattern=st.sampled_from(["{name}_l", "p{n}", "{n:02}", "same", "{name}"]))
+    def rename_many(self, data, pattern):
+        before = self.editor.session
+        new_names = names_by_pattern(self.several(data), pattern)
+        others = {x.name for x in before.landmarks} - set(new_names)
+        try:
+            self.commit(edits.rename_many(before, new_names), "rename many")
+        except LandmarkError:
+            given = list(new_names.values())
+            assert len(set(given)) < len(given) or others & set(given)
+
+    @has_landmarks
+    @rule(data=st.data())
+    def copy_and_paste(self, data):
+        """Onto itself it changes nothing; what was deleted comes back as it was, at the end."""
+        before = self.editor.session
+        chosen = [x for x in before.landmarks if x.name in self.several(data)]
+        table = read_clipboard(clipboard_text(chosen))
+        assert edits.paste(before, table.rows) == before
+        gone = edits.remove(before, [x.name for x in chosen])
+        pasted = edits.paste(gone, table.rows)
+        expected = [replace(x, locked=False) for x in chosen]
+        assert list(pasted.landmarks[len(gone.landmarks) :]) == expected
+        self.commit(pasted, "paste")
 
     @has_landmarks
     @rule(data=st.data(), enabled=st.booleans())

@@ -1,4 +1,4 @@
-"""Rigid and similarity fits of one set of positions to another."""
+"""Rigid and similarity fits of one set of positions to another, and what an affine map does."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import Rotation
 
 Matrix = NDArray[np.float64]
 
@@ -95,3 +96,81 @@ def _smallest_rotation(a: Matrix, b: Matrix) -> Matrix:
     x, y, z = axis
     W = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return np.asarray(np.eye(3) + W + W @ W / (1 + cosine))
+
+
+@dataclass(frozen=True, eq=False)
+class AffineParts:
+    """An affine map taken apart: first it stretches, then turns, then moves.
+
+    Attributes
+    ----------
+    translation : (3,) float64
+        How far it moves the centre, in mesh units.
+    axis : (3,)
+        Unit vector that the rotation turns about; x where there is none.
+    angle : float
+        How far it turns, right-handed, in degrees from 0 to 180.
+    scales : (3,)
+        How lengths along x, y and z of the source grow: the diagonal of the stretch.
+    shears : (3,)
+        Its xy, xz and yz entries: how far y leans towards x, z towards x and z towards y.
+    principal : (3,)
+        The stretch along the directions that it does not turn, the largest first.
+    directions : (3, 3)
+        These directions, as rows.
+    mirrored : bool
+        Whether it makes a left bone of a right one; the last principal stretch is then below 0.
+    """
+
+    translation: Matrix
+    axis: Matrix
+    angle: float
+    scales: Matrix
+    shears: Matrix
+    principal: Matrix
+    directions: Matrix
+    mirrored: bool
+
+
+def decompose(affine: ArrayLike, centre: ArrayLike = (0.0, 0.0, 0.0)) -> AffineParts:
+    """Take the affine part of a spline apart by polar decomposition.
+
+    ``v -> a1 + L v`` with ``L = R S``: the proper rotation nearest to L and a symmetric stretch
+    (Higham, SIAM J. Sci. Stat. Comput. 7 (1986)).
+
+    Parameters
+    ----------
+    affine
+        (4, 3) rows ``a1 ... a4``, as in :class:`~pinwarp.core.spline.Spline`.
+    centre
+        (3,) place whose movement is called the translation; better the middle of the bone than
+        an origin far away.
+
+    Examples
+    --------
+    >>> quarter_turn = [[1, 0, 0], [0, 2, 0], [-2, 0, 0], [0, 0, 2]]
+    >>> parts = decompose(quarter_turn)
+    >>> round(parts.angle), parts.axis.round(9).tolist(), parts.scales.round(9).tolist()
+    (90, [0.0, 0.0, 1.0], [2.0, 2.0, 2.0])
+    """
+    rows = np.asarray(affine, dtype=np.float64)
+    place = np.asarray(centre, dtype=np.float64)
+    linear = rows[1:].T
+    U, values, Vt = np.linalg.svd(linear)
+    mirrored = bool(np.linalg.det(U) * np.linalg.det(Vt) < 0 and values[2] > 0)
+    if np.linalg.det(U) * np.linalg.det(Vt) < 0:
+        # The rotation must be proper: the weakest direction takes the sign.
+        U, values = U * [1, 1, -1], values * [1, 1, -1]
+    stretch = Vt.T @ (values[:, None] * Vt)
+    turn = Rotation.from_matrix(U @ Vt).as_rotvec()
+    angle = float(np.linalg.norm(turn))
+    return AffineParts(
+        translation=rows[0] + linear @ place - place,
+        axis=turn / angle if angle > 0 else np.array([1.0, 0.0, 0.0]),
+        angle=float(np.degrees(angle)),
+        scales=np.diag(stretch).copy(),
+        shears=stretch[[0, 0, 1], [1, 2, 2]],
+        principal=values,
+        directions=Vt,
+        mirrored=mirrored,
+    )

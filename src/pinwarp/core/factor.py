@@ -108,6 +108,28 @@ class SourceFactor:
         _, vectors = self.modes
         return self.rotate_back(np.vstack([np.zeros((self.rank + 1, len(vectors))), vectors]))
 
+    def certainty(self, penalties: Matrix) -> tuple[Matrix, Matrix]:
+        """Return ``(stiffest + s) / (lambda + s)`` of every mode for (k,) penalties.
+
+        Relative to the stiffest mode, so that it has a limit, 1, at an infinite penalty.
+
+        Returns
+        -------
+        certainty : (modes, k)
+            0 for the modes that the solve drops: what duplicate landmarks leave undetermined.
+        noise : (k,)
+            ``s / (stiffest + s)``.
+        """
+        values, _ = self.modes
+        largest = self.stiffest_mode + penalties
+        finite = np.isfinite(largest)
+        noise = np.divide(penalties, largest, out=np.ones_like(largest), where=finite)
+        shifts = values[:, None] + penalties
+        certainty = np.zeros_like(shifts)
+        np.divide(largest, shifts, out=certainty, where=finite & (shifts > self.smallest_mode))
+        certainty[:, ~finite] = 1.0
+        return certainty, noise
+
     @property
     def has_modes(self) -> bool:
         """Whether the eigendecomposition has been computed already."""
@@ -121,10 +143,14 @@ class SourceFactor:
     @property
     def smallest_mode(self) -> float:
         """What an eigenvalue must exceed to be told from rounding, in mesh units."""
+        return float(8 * len(self.source) * np.finfo(np.float64).eps * self.stiffest_mode)
+
+    @property
+    def stiffest_mode(self) -> float:
+        """The largest eigenvalue, but no less than the scale: mesh units."""
         values, _ = self.modes
         # With duplicates alone left, the largest eigenvalue is rounding too: compare to the scale.
-        largest = max(float(values[-1]) if len(values) else 0.0, self.scale)
-        return float(8 * len(self.source) * np.finfo(np.float64).eps * largest)
+        return max(float(values[-1]) if len(values) else 0.0, self.scale)
 
     @property
     def poles(self) -> Matrix:

@@ -1,7 +1,8 @@
-"""What a solve noticed about its landmarks: facts as data, turned into words on demand."""
+"""What was noticed about a set of landmarks: facts as data, turned into words on demand."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -14,6 +15,11 @@ class FindingKind(StrEnum):
     CLOSE = "close"
     NEARLY_PLANAR = "nearly planar"
     POLE = "pole"
+    INCONSISTENT = "inconsistent"
+    SUSPECT = "suspect"
+    ISOLATED = "isolated"
+    SWAPPED = "swapped"
+    MIRRORED = "mirrored"
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,12 +35,19 @@ class Finding:
     value
         The figure that goes with it: for a conflict or close landmarks the distance on the
         destination or source (mesh units), for nearly planar landmarks the ratio of the
-        smallest to the largest extent, for a pole its penalty (mesh units).
+        smallest to the largest extent, for a pole its penalty (mesh units). For inconsistent
+        landmarks their distance on the source, for a suspect its standardised leave-one-out
+        error, for an isolated landmark the distance to the nearest, for swapped or mirrored
+        ones the share of the error that is left when that is put right.
+    others
+        Further figures: for inconsistent landmarks their distance on the destination, for a
+        suspect or isolated landmark its leave-one-out error (mesh units).
     """
 
     kind: FindingKind
     rows: tuple[int, ...]
     value: float
+    others: tuple[float, ...] = ()
 
     def describe(self, names: Sequence[str] | None = None, unit: str = "") -> str:
         """Say it in a sentence.
@@ -53,6 +66,7 @@ class Finding:
         """
         who = " and ".join(names[row] if names else f"landmark {row}" for row in self.rows)
         length = f"{self.value:.4g} {unit}".rstrip()
+        other = f"{self.others[0]:.3g} {unit}".rstrip() if self.others else ""
         match self.kind:
             case FindingKind.CONFLICT:
                 return (
@@ -71,3 +85,36 @@ class Finding:
                     f"The penalty is near or above the pole at {length}: under the OPYNSIM "
                     "convention it over-warps there instead of smoothing."
                 )
+            case FindingKind.INCONSISTENT:
+                near = f"{self.value:.3g} {unit}".rstrip()
+                return f"{who} are {near} apart on the source, {other} on the destination."
+            case FindingKind.SUSPECT:
+                return (
+                    f"{who} lies {other} from where the other pairs expect it, "
+                    f"{self.value:.1f} times what is usual for its surroundings."
+                )
+            case FindingKind.ISOLATED:
+                free = f"{_round_down(self.value)} {unit}".rstrip()
+                return (
+                    f"{who} is isolated: no landmark within {free}. "
+                    f"That the other pairs miss it by {other} says little about it."
+                )
+            case FindingKind.SWAPPED:
+                return (
+                    f"{who} look swapped: exchanging their destinations lowers the "
+                    f"leave-one-out error to {self.value:.0%}."
+                )
+            case FindingKind.MIRRORED:
+                return (
+                    "The destination looks like a mirror image of the source: "
+                    "are they a left and a right bone?"
+                )
+
+
+def _round_down(value: float) -> str:
+    """Say a length in two digits that it is not below."""
+    if not value > 0:
+        return "0"
+    step = 10.0 ** (math.floor(math.log10(value)) - 1)
+    # Rounding must not turn the 7 of 7.0 into a 6.9.
+    return f"{math.floor(value / step * (1 + 1e-12)) * step:.6g}"

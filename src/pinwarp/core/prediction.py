@@ -65,7 +65,7 @@ class Prediction:
         return np.asarray(self._sigma * np.sqrt(np.maximum(out, 0.0, out=out), out=out))
 
     def _variance(self, points: Matrix) -> Matrix:
-        """Return ``-[c; p]^T M^-1 [c; p]`` times the share (see :func:`prediction_of`).
+        """Return ``-[c; p]^T M^-1 [c; p]`` relative to the stiffest mode.
 
         With ``t = R^-T p`` and ``d = Z^T Q2^T (c + K Q1 t)`` it reads
         ``t^T (s I - Q1^T K Q1) t - 2 (Q1^T c) . t - d^T (Lambda + s)^-1 d``.
@@ -122,18 +122,10 @@ def prediction_of(
     """
     displacement, _, _ = displacements(factor, destination)
     penalty = check_penalty(penalty)
-    values, _ = factor.modes
     if not factor.usable_modes.any():
         return None
-    # All is relative to the largest shift: so that the limit of an infinite penalty is in reach.
-    largest = float(values[-1]) + penalty
-    share = factor.scale / largest
-    noise = penalty / largest if np.isfinite(largest) else 1.0
-    kept = values + penalty > factor.smallest_mode
-    certainty = np.ones_like(values)
-    if np.isfinite(largest):
-        certainty = np.divide(largest, values + penalty, out=np.zeros_like(values), where=kept)
-
+    certainties, noise = factor.certainty(np.array([penalty]))
+    certainty = certainties[:, 0]
     modes = factor.modes_at_landmarks
     pulls = modes @ (certainty[:, None] * (modes.T @ displacement))
     diagonal = (modes * modes) @ certainty
@@ -141,13 +133,15 @@ def prediction_of(
     sigma = np.sqrt(np.mean(pulls[judged] ** 2 / diagonal[judged, None]))
     columns = factor.rank + 1
     affine = factor.rotate_back(np.eye(len(factor.source), columns))
-    weight = share * np.sqrt(certainty)
     _, vectors = factor.modes
+    # All is relative to the stiffest mode; at an infinite penalty the modes have no share.
+    share = factor.scale / (factor.stiffest_mode + penalty)
+    weight = share * np.sqrt(certainty)
     return Prediction(
         _sigma=float(sigma),
         _factor=factor,
         _columns=np.hstack([affine, modes * weight]),
-        _corner=share * factor.corner + noise * np.eye(columns),
+        _corner=share * factor.corner + noise[0] * np.eye(columns),
         _coupling=(factor.coupling @ vectors) * weight,
         _share=share,
     )

@@ -51,11 +51,29 @@ SPECS = (
     ActionSpec("quit", "&Quit", "Ctrl+Q"),
     ActionSpec("undo", "&Undo", "Ctrl+Z", "undo"),
     ActionSpec("redo", "&Redo", "Ctrl+Shift+Z", "redo"),
+    ActionSpec("copy", "&Copy", "Ctrl+C", "", "As a table for a spreadsheet"),
+    ActionSpec("paste", "&Paste", "Ctrl+V", "", "Landmarks from a spreadsheet or CSV text"),
     ActionSpec("rename", "Re&name Landmark", "F2"),
+    ActionSpec(
+        "rename_many", "Rename &Several…", "Ctrl+F2", "", "By a pattern, or find and replace"
+    ),
+    ActionSpec("note", "No&te…", "Shift+F2", "", "Write something down about a landmark"),
+    ActionSpec("toggle_enabled", "&Disable", "Ctrl+D", "", "Let pairs take part, or not"),
+    ActionSpec("toggle_locked", "&Lock", "Ctrl+L", "", "Protect from being moved by accident"),
+    ActionSpec(
+        "toggle_role", "Make &Passenger", "Ctrl+Shift+P", "", "Carried by the warp, not solved for"
+    ),
+    ActionSpec("move_up", "Move Row &Up", "Alt+Up"),
+    ActionSpec("move_down", "Move Row Do&wn", "Alt+Down"),
+    ActionSpec("next_incomplete", "Next &Incomplete Landmark", "N"),
+    ActionSpec("filter", "&Filter Landmarks", "Ctrl+F"),
     ActionSpec("delete_side", "&Delete Position", "Del", "delete", "On the selected side only"),
     ActionSpec("delete_landmark", "Delete &Landmark", "Ctrl+Del", "", "On both sides"),
     ActionSpec("select_none", "Select &None", "Esc"),
     ActionSpec("overlay", "Show &Warped Source", "W", "overlay", "Over the destination", True),
+    ActionSpec(
+        "show_coordinates", "Show &Coordinates", "Ctrl+Shift+C", "", "In the table, to edit", True
+    ),
     ActionSpec("fit", "&Fit Both Views", "Home", "fit", "Look at both bones as a whole"),
     ActionSpec("accept_ghost", "&Accept Ghost", "Space", "", "Place it where it is expected"),
     ActionSpec("snap", "S&nap to Surface", "S", "", "Put the selection back onto the bone"),
@@ -67,7 +85,6 @@ SPECS = (
     ),
     ActionSpec("guide", "&Guide", "G", "guide", "Ask for one landmark after the other", True),
     ActionSpec("export_passengers", "Warped &Passengers…", "", "", "Where the warp carries them"),
-    ActionSpec("shortcuts", "&Shortcuts", "F1", "", "All keys and mouse gestures"),
     ActionSpec("swap_sides", "S&wap Source and Destination", "", "", "Warp the other way round"),
     ActionSpec("mirror_x", "Across &X", "", "", "Left becomes right along x"),
     ActionSpec("mirror_y", "Across &Y", "", "", "Left becomes right along y"),
@@ -90,6 +107,7 @@ SPECS = (
     ActionSpec("wireframe", "W&ireframe Bones", "Shift+W", "", "Draw edges only", True),
     ActionSpec("section", "&Cross-Section", "X", "section", "Cut both bones open", True),
     ActionSpec("link_next", "&Next Camera Link", "K", "link_linked"),
+    ActionSpec("shortcuts", "&Shortcuts", "F1", "", "All keys and mouse gestures"),
     ActionSpec("about", "&About pinwarp"),
     ActionSpec("about_penalty", "About the Warping &Penalty"),
 )
@@ -121,9 +139,13 @@ def icon(name: str) -> QIcon:
     """Return an icon of the project's own, in the colour of the window's text."""
     text = (assets_folder() / "icons" / f"{name}.svg").read_text(encoding="utf-8")
     result = QIcon()
-    normal = theme.text_colour().name()
-    for mode, opacity in ((QIcon.Mode.Normal, 1.0), (QIcon.Mode.Disabled, 0.35)):
-        renderer = QSvgRenderer(QByteArray(text.replace("currentColor", normal).encode()))
+    normal, selected = theme.text_colour().name(), theme.selected_text_colour().name()
+    for mode, colour, opacity in (
+        (QIcon.Mode.Normal, normal, 1.0),
+        (QIcon.Mode.Selected, selected, 1.0),
+        (QIcon.Mode.Disabled, normal, 0.35),
+    ):
+        renderer = QSvgRenderer(QByteArray(text.replace("currentColor", colour).encode()))
         for size in (20, 40, 64):
             pixmap = QPixmap(QSize(size, size))
             pixmap.fill(Qt.GlobalColor.transparent)

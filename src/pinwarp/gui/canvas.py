@@ -97,13 +97,13 @@ class Canvas(FastView):
         self.layer.hint, self.layer.unit = scene.hint, scene.unit
         self.layer.radius = scene.marker_radius
         self.layer.set_markers(scene.markers)
+        self.layer.ghost = scene.ghost
         if before is None or scene.wireframe != before.wireframe:
             for drawn in (self._full, self._coarse):
                 drawn.set_wireframe(scene.wireframe)
             self.update()
         if scene.section != (before.section if before is not None else None):
             self._show_section(scene.section)
-        self.layer.ghost = scene.ghost
         overlay = (scene.overlay_visible, scene.overlay_opacity)
         if before is None or overlay != (before.overlay_visible, before.overlay_opacity):
             self._choose_detail()

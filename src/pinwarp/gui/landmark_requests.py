@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 from psygnal import Signal
 
-from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Landmark, Side, as_position
 from pinwarp.gui.surface import Surface
 from pinwarp.gui.viewport import Viewport
@@ -196,7 +195,7 @@ class LandmarkRequests:
             return True
         return False
 
-    # Deleting, naming, choosing
+    # Deleting
 
     def delete_side(self) -> None:
         """Delete the selected landmarks' position on the selected side."""
@@ -229,27 +228,6 @@ class LandmarkRequests:
     def _selected_words(self) -> str:
         names = self._editor.selection.names
         return names[0] if len(names) == 1 else f"{len(names)} landmarks"
-
-    def rename(self, name: str, new_name: str) -> None:
-        """Give a landmark another name, or say why not."""
-        editor = self._editor
-        try:
-            session = edits.rename(editor.committed, name, new_name)
-        except PinwarpError as error:
-            self.refused.emit(str(error))
-            return
-        was_selected, was_guided = name in editor.selection.names, editor.view.guided == name
-        editor.commit(session, f"Rename {name}")
-        if was_selected:
-            editor.select(new_name.strip())
-        if was_guided:
-            editor.look(guided=new_name.strip())
-
-    def enable(self, name: str, enabled: bool) -> None:
-        """Let a pair take part, or not."""
-        verb = "Enable" if enabled else "Disable"
-        session = edits.set_enabled(self._editor.committed, [name], enabled)
-        self._editor.commit(session, f"{verb} {name}")
 
 
 def is_on(surface: Surface, position: NDArray) -> bool:

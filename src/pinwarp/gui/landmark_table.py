@@ -1,220 +1,271 @@
-"""The table of landmarks: a model over the session, and the view with its requests."""
+"""The table of landmarks: renders the editor's selection and asks for another."""
 
 from __future__ import annotations
 
-from typing import Any
-
-from qtpy.QtCore import QAbstractTableModel, QItemSelectionModel, QModelIndex, Qt, Signal
-from qtpy.QtGui import QColor
-from qtpy.QtWidgets import QAbstractItemView, QHeaderView, QTableView, QWidget
-
-from pinwarp.core.landmarks import Landmark, LandmarkState, Position, Side
-from pinwarp.gui import theme
-from pinwarp.gui.marker_painting import state_icon
-from pinwarp.session.editor import Selection
-from pinwarp.session.results import WarpResult
-from pinwarp.session.session import Session
-
-NAME, SOURCE, DESTINATION, RESIDUAL = range(4)
-_TITLES = ("Landmark", "Source", "Dest.", "Residual")
-_TIPS = (
-    "Double-click or F2 renames; the tick lets the pair take part",
-    "Whether it is placed on the source mesh; the tip shows where",
-    "Whether it is placed on the destination mesh; the tip shows where",
-    "Distance from the warped source landmark to its destination",
+from qtpy.QtCore import (
+    QEvent,
+    QItemSelection,
+    QItemSelectionModel,
+    QModelIndex,
+    QPoint,
+    QRect,
+    Qt,
+    Signal,
 )
-_SIDES = {SOURCE: Side.SOURCE, DESTINATION: Side.DESTINATION}
+from qtpy.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
+from qtpy.QtWidgets import QAbstractItemView, QHeaderView, QStyle, QTableView, QWidget
 
+from pinwarp.gui import theme
+from pinwarp.gui.landmark_cells import LandmarkCells, NameCells
+from pinwarp.gui.landmark_columns import COLUMNS, LOCKED, NAME, column_number
+from pinwarp.gui.landmark_model import LandmarkModel
+from pinwarp.gui.landmark_order import LandmarkOrder
+from pinwarp.session.editor import Selection
 
-class LandmarkModel(QAbstractTableModel):
-    """The session's landmarks as Qt's views want them; holds no truth of its own."""
+__all__ = ["LandmarkModel", "LandmarkTable"]
 
-    rename_requested = Signal(str, str)
-    enable_requested = Signal(str, bool)
-
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self._session = Session()
-        self._residuals: dict[str, float] = {}
-
-    @property
-    def landmarks(self) -> tuple[Landmark, ...]:
-        """The landmarks in the order of the rows."""
-        return self._session.landmarks
-
-    def show_session(self, session: Session) -> None:
-        """Show the landmarks of a session, touching only what differs."""
-        old, self._session = self._session, session
-        if len(old.landmarks) != len(session.landmarks):
-            self.beginResetModel()
-            self.endResetModel()
-        elif old.landmarks is not session.landmarks:
-            last = self.index(len(session.landmarks) - 1, RESIDUAL)
-            self.dataChanged.emit(self.index(0, 0), last)
-
-    def show_result(self, result: WarpResult | None) -> None:
-        """Show the residuals of a warp."""
-        residuals: dict[str, float] = {}
-        if result is not None and result.residuals is not None:
-            pairs = self._session.pairs
-            if len(pairs) == len(result.residuals):
-                names = (pair.name for pair in pairs)
-                residuals = dict(zip(names, result.residuals.tolist(), strict=True))
-        if residuals != self._residuals:
-            self._residuals = residuals
-            if self.landmarks:
-                last = self.index(len(self.landmarks) - 1, RESIDUAL)
-                self.dataChanged.emit(self.index(0, RESIDUAL), last)
-
-    def rowCount(self, parent: QModelIndex | None = None) -> int:
-        """Return the number of landmarks."""
-        return 0 if parent is not None and parent.isValid() else len(self.landmarks)
-
-    def columnCount(self, parent: QModelIndex | None = None) -> int:
-        """Return the number of columns."""
-        return 0 if parent is not None and parent.isValid() else len(_TITLES)
-
-    def headerData(self, section: int, orientation: Qt.Orientation, role: int = 0) -> Any:
-        """Return the titles of the columns."""
-        if orientation != Qt.Orientation.Horizontal or not 0 <= section < len(_TITLES):
-            return None
-        if role == Qt.ItemDataRole.DisplayRole:
-            return _TITLES[section]
-        if role == Qt.ItemDataRole.ToolTipRole:
-            return _TIPS[section]
-        return None
-
-    def flags(self, index: QModelIndex) -> Qt.ItemFlag:
-        """Return what can be done with a cell."""
-        if not index.isValid():
-            return Qt.ItemFlag.NoItemFlags
-        flags = Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable
-        if index.column() == NAME:
-            flags |= Qt.ItemFlag.ItemIsEditable
-            if self.landmarks[index.row()].state is not LandmarkState.PASSENGER:
-                flags |= Qt.ItemFlag.ItemIsUserCheckable
-        return flags
-
-    def data(self, index: QModelIndex, role: int = 0) -> Any:
-        """Return what a cell shows."""
-        if not index.isValid() or index.row() >= len(self.landmarks):
-            return None
-        landmark, column = self.landmarks[index.row()], index.column()
-        if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.EditRole):
-            return self._text(landmark, column)
-        if role == Qt.ItemDataRole.DecorationRole and column == NAME:
-            return state_icon(landmark.state)
-        if role == Qt.ItemDataRole.CheckStateRole and column == NAME:
-            if landmark.state is LandmarkState.PASSENGER:
-                return None
-            return Qt.CheckState.Checked if landmark.enabled else Qt.CheckState.Unchecked
-        if role == Qt.ItemDataRole.ForegroundRole and not landmark.enabled:
-            return QColor(theme.STATE_COLOURS[LandmarkState.DISABLED])
-        if role == Qt.ItemDataRole.TextAlignmentRole and column != NAME:
-            across = (
-                Qt.AlignmentFlag.AlignRight if column == RESIDUAL else Qt.AlignmentFlag.AlignHCenter
-            )
-            return int(across | Qt.AlignmentFlag.AlignVCenter)
-        if role == Qt.ItemDataRole.ToolTipRole:
-            if column in _SIDES:
-                return position_text(landmark.position(_SIDES[column]))
-            return f"{landmark.name}: {landmark.state.value}"
-        return None
-
-    def _text(self, landmark: Landmark, column: int) -> str:
-        if column == NAME:
-            return landmark.name
-        if column == RESIDUAL:
-            residual = self._residuals.get(landmark.name)
-            return "" if residual is None else _residual_text(residual, landmark)
-        if landmark.position(_SIDES[column]) is not None:
-            return "✓"
-        return "carried" if landmark.state is LandmarkState.PASSENGER else "–"
-
-    def setData(self, index: QModelIndex, value: Any, role: int = 0) -> bool:
-        """Ask for what the user typed or ticked; the session decides."""
-        if not index.isValid() or index.column() != NAME:
-            return False
-        landmark = self.landmarks[index.row()]
-        if role == Qt.ItemDataRole.EditRole and str(value) != landmark.name:
-            self.rename_requested.emit(landmark.name, str(value))
-            return True
-        if role == Qt.ItemDataRole.CheckStateRole:
-            self.enable_requested.emit(landmark.name, Qt.CheckState(value) == Qt.CheckState.Checked)
-            return True
-        return False
-
-
-def _residual_text(residual: float, landmark: Landmark) -> str:
-    size = max(abs(x) for x in landmark.destination or (1.0,))
-    return "0" if residual < 1e-9 * max(size, 1e-300) else f"{residual:.3g}"
+_NAME, _LOCKED = column_number(NAME), column_number(LOCKED)
+_LEAST_NAME_WIDTH = 150
+_EMPTY_HINT = "Click the same place\non both bones"
 
 
 class LandmarkTable(QTableView):
-    """The table; it renders the selection of the editor and asks for another."""
+    """The table; every row is one landmark, in the session's order unless sorted."""
 
     selection_requested = Signal(list, object)
+    lock_requested = Signal(list, bool)
+    toggle_requested = Signal()
+    refused = Signal(str)
 
     def __init__(self, model: LandmarkModel, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.setModel(model)
         self._model = model
+        self.order = LandmarkOrder(model, self)
+        self.setModel(self.order)
+        self._cells = LandmarkCells(model, self.order, self)
+        self._names = NameCells(model, self.order, self)
+        self.setItemDelegate(self._cells)
+        self.setItemDelegateForColumn(_NAME, self._names)
+        for cells in (self._cells, self._names):
+            cells.refused.connect(self.refused)
         self._rendering = False
+        self._fitting = False
+        self._set_up_rows()
+        self._set_up_header()
+        self._set_up_dragging()
+        self.selectionModel().selectionChanged.connect(self._on_selected)
+
+    def _set_up_rows(self) -> None:
         self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         self.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.setEditTriggers(
             QAbstractItemView.EditTrigger.DoubleClicked
             | QAbstractItemView.EditTrigger.EditKeyPressed
         )
+        self.setHorizontalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
         self.setAlternatingRowColors(True)
         self.setShowGrid(False)
         self.setWordWrap(False)
+        # The ends of names tell them apart more often than the middles.
+        self.setTextElideMode(Qt.TextElideMode.ElideMiddle)
         self.setAccessibleName("Landmarks")
         self.verticalHeader().hide()
         self.verticalHeader().setDefaultSectionSize(self.fontMetrics().height() + 9)
+
+    def _set_up_header(self) -> None:
         header = self.horizontalHeader()
         header.setHighlightSections(False)
-        header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
-        header.setMinimumSectionSize(50)
-        header.setSectionResizeMode(NAME, QHeaderView.ResizeMode.Stretch)
-        for column in (SOURCE, DESTINATION, RESIDUAL):
-            width = self.fontMetrics().horizontalAdvance(_TITLES[column]) + 20
-            header.resizeSection(column, width)
-        self.selectionModel().selectionChanged.connect(self._on_selected)
+        header.setMinimumSectionSize(24)
+        header.setSectionResizeMode(QHeaderView.ResizeMode.Interactive)
+        header.setSortIndicatorClearable(True)
+        header.setSortIndicator(-1, Qt.SortOrder.AscendingOrder)
+        self.setSortingEnabled(True)
+        self.show_coordinates(False)
+        header.sectionResized.connect(lambda *_: self._fit_name())
+        header.sortIndicatorChanged.connect(lambda *_: self._on_order())
+
+    def _set_up_dragging(self) -> None:
+        self.setDragDropMode(QAbstractItemView.DragDropMode.DragDrop)
+        self.setDefaultDropAction(Qt.DropAction.MoveAction)
+        self.setDragDropOverwriteMode(False)
+        self.setDropIndicatorShown(True)
+
+    # Columns
+
+    def show_coordinates(self, shown: bool) -> None:
+        """Show or hide the columns that are there on demand."""
+        self._fitting = True
+        for number, column in enumerate(COLUMNS):
+            if column.on_demand:
+                self.setColumnHidden(number, not shown)
+        self._fitting = False
+        self._fit_columns()
+
+    def _fit_columns(self) -> None:
+        """Give each column room for its title with the arrow, and for what it usually says."""
+        header = self.horizontalHeader()
+        arrow = self.style().pixelMetric(QStyle.PixelMetric.PM_HeaderMarkSize, None, header)
+        margin = self.style().pixelMetric(QStyle.PixelMetric.PM_HeaderMargin, None, header)
+        self._fitting = True
+        for number, column in enumerate(COLUMNS):
+            if number != _NAME and not self.isColumnHidden(number):
+                title = 16 if column.header_icon else _width(header, column.title)
+                cell = _width(self, column.widest) + 12
+                header.resizeSection(number, max(title + arrow + 3 * margin, cell))
+        self._fitting = False
+        self._fit_name()
+
+    def _fit_name(self) -> None:
+        """Give the names the rest of the width."""
+        if self._fitting:
+            return
+        self._fitting = True
+        header = self.horizontalHeader()
+        others = sum(header.sectionSize(n) for n in range(len(COLUMNS)) if n != _NAME)
+        # A second time, as the first may let a scroll bar come or go.
+        for _ in range(2):
+            header.resizeSection(_NAME, max(self.viewport().width() - others, _LEAST_NAME_WIDTH))
+        self._fitting = False
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Let the names have what is gained or lost."""
+        super().resizeEvent(event)
+        self._fit_name()
+
+    # Order and filter
+
+    def set_filter(self, text: str) -> None:
+        """Show only the landmarks that match; hidden ones are no longer selected."""
+        before = self._selected_names()
+        self._rendering = True
+        self.order.set_filter(text)
+        self._rendering = False
+        self._on_order()
+        if self._selected_names() != before:
+            self._on_selected()
+
+    def restore_order(self) -> None:
+        """Sort by nothing: the order of the session."""
+        self.horizontalHeader().setSortIndicator(-1, Qt.SortOrder.AscendingOrder)
+
+    def _on_order(self) -> None:
+        # A place between sorted rows means nothing to the session.
+        self.setDragEnabled(self.order.is_original)
+        self.viewport().update()
+
+    # Selection
 
     def show_selection(self, selection: Selection) -> None:
         """Select the rows of the selected landmarks."""
+        selector, wanted = self.selectionModel(), set(selection.names)
+        indexes = (
+            self.order.mapFromSource(self._model.index(row, _NAME))
+            for row, landmark in enumerate(self._model.landmarks)
+            if landmark.name in wanted
+        )
+        rows = sorted(index.row() for index in indexes if index.isValid())
+        if sorted(index.row() for index in selector.selectedRows()) == rows:
+            return
+        chosen = QItemSelection()
+        for row in rows:
+            index = self.order.index(row, _NAME)
+            chosen.select(index, index)
+        flags = QItemSelectionModel.SelectionFlag
         self._rendering = True
-        selector = self.selectionModel()
-        rows = [
-            i
-            for i, landmark in enumerate(self._model.landmarks)
-            if landmark.name in selection.names
-        ]
-        if sorted(index.row() for index in selector.selectedRows()) != rows:
-            selector.clearSelection()
-            for row in rows:
-                selector.select(
-                    self._model.index(row, NAME),
-                    QItemSelectionModel.SelectionFlag.Select
-                    | QItemSelectionModel.SelectionFlag.Rows,
-                )
-            if rows:
-                self.scrollTo(self._model.index(rows[0], NAME))
-                if not self.hasFocus():
-                    selector.setCurrentIndex(
-                        self._model.index(rows[0], NAME), QItemSelectionModel.SelectionFlag.NoUpdate
-                    )
+        selector.select(chosen, flags.ClearAndSelect | flags.Rows)
+        if rows:
+            first = self.order.index(rows[0], _NAME)
+            self.scrollTo(first)
+            if not self.hasFocus():
+                selector.setCurrentIndex(first, flags.NoUpdate)
         self._rendering = False
 
+    def _selected_names(self) -> list[str]:
+        rows = sorted(self.selectionModel().selectedRows(), key=QModelIndex.row)
+        return [self.order.landmark(index).name for index in rows]
+
     def _on_selected(self) -> None:
-        if self._rendering:
+        if self._rendering or self._model.is_updating:
             return
-        rows = sorted(index.row() for index in self.selectionModel().selectedRows())
-        names = [self._model.landmarks[row].name for row in rows]
-        self.selection_requested.emit(names, _SIDES.get(self.currentIndex().column()))
+        current = self.currentIndex()
+        side = COLUMNS[current.column()].side if current.isValid() else None
+        self.selection_requested.emit(self._selected_names(), side)
+
+    def index_of(self, name: str, column: int = _NAME) -> QModelIndex:
+        """Return the cell of a landmark as it is shown; an invalid index where it is hidden."""
+        for row, landmark in enumerate(self._model.landmarks):
+            if landmark.name == name:
+                return self.order.mapFromSource(self._model.index(row, column))
+        return QModelIndex()
+
+    def rename(self, name: str) -> None:
+        """Open the name of a landmark for typing."""
+        index = self.index_of(name)
+        if index.isValid():
+            self.setFocus()
+            self.scrollTo(index)
+            self.edit(index)
+
+    # Mouse and keys
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Turn a click on a lock; on a selected row it turns those of the whole selection."""
+        index = self.indexAt(event.pos())
+        if index.isValid() and index.column() == _LOCKED and _is_plain_click(event):
+            landmark = self.order.landmark(index)
+            chosen = self._selected_names()
+            names = chosen if landmark.name in chosen else [landmark.name]
+            self.lock_requested.emit(names, not landmark.locked)
+            return
+        super().mousePressEvent(event)
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        """Take two quick clicks on a lock for what they are."""
+        if self.indexAt(event.pos()).column() == _LOCKED:
+            self.mousePressEvent(event)
+        else:
+            super().mouseDoubleClickEvent(event)
+
+    def event(self, event: QEvent) -> bool:
+        """Claim Space, which accepts the ghost everywhere else in the window."""
+        if event.type() == QEvent.Type.ShortcutOverride and event.key() == Qt.Key.Key_Space:
+            event.accept()
+            return True
+        return super().event(event)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Space turns the ticks of all selected rows, not only of the current one."""
+        if event.key() == Qt.Key.Key_Space and not event.modifiers():
+            self.toggle_requested.emit()
+        else:
+            super().keyPressEvent(event)
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Keep the columns wide enough for another font."""
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self._fit_columns()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Say what to do where there is nothing to show."""
+        super().paintEvent(event)
+        if self.order.rowCount():
+            return
+        hint = "No landmark matches\nthe filter" if self.order.is_filtered else _EMPTY_HINT
+        painter = QPainter(self.viewport())
+        painter.setPen(QColor(theme.QUIET_INK) if not theme.is_dark() else theme.text_colour())
+        room = self.viewport().rect().adjusted(12, 12, -12, -12)
+        painter.drawText(_upper_half(room), Qt.AlignmentFlag.AlignCenter, hint)
+        painter.end()
 
 
-def position_text(position: Position | None) -> str:
-    """Return a position for people."""
-    return "not placed" if position is None else "({:.5g}, {:.5g}, {:.5g})".format(*position)
+def _width(widget: QWidget, text: str) -> int:
+    return int(widget.fontMetrics().horizontalAdvance(text))
+
+
+def _upper_half(room: QRect) -> QRect:
+    return QRect(room.topLeft(), QPoint(room.right(), room.center().y()))
+
+
+def _is_plain_click(event: QMouseEvent) -> bool:
+    return bool(event.button() == Qt.MouseButton.LeftButton and not event.modifiers())

@@ -11,7 +11,6 @@ from qtpy.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QMainWindow,
-    QMenu,
     QProgressBar,
     QPushButton,
     QSizePolicy,
@@ -23,7 +22,6 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.landmarks import Side
-from pinwarp.gui import menus
 from pinwarp.gui.actions import icon, make_actions
 from pinwarp.gui.bone_edits import BoneEdits
 from pinwarp.gui.dialogs import Dialogs
@@ -32,34 +30,18 @@ from pinwarp.gui.guidance import Guidance
 from pinwarp.gui.guide_bar import GuideBar
 from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY
 from pinwarp.gui.jobs import SlowJob
+from pinwarp.gui.landmark_panel import LandmarkPanel
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
+from pinwarp.gui.menus import fill_toolbar, make_menus, shortcut_groups
 from pinwarp.gui.penalty_panel import PenaltyPanel
 from pinwarp.gui.presenter import Presenter
 from pinwarp.gui.recent_files import RecentFiles
 from pinwarp.gui.shortcut_overlay import ShortcutOverlay
+from pinwarp.gui.table_presenter import TablePresenter
 from pinwarp.gui.view_controls import ViewControls
 from pinwarp.gui.viewport import Viewport
 from pinwarp.io.samples import sample_session
 from pinwarp.session.editor import Editor
-
-_TOOLBAR = (
-    "open_session",
-    "open_source",
-    "open_destination",
-    "save",
-    "export_mesh",
-    None,
-    "undo",
-    "redo",
-    "delete_side",
-    None,
-    "lock",
-    "guide",
-    None,
-    "fit",
-    "link_next",
-    "overlay",
-)
 
 
 class MainWindow(QMainWindow):
@@ -83,6 +65,7 @@ class MainWindow(QMainWindow):
         self.panel = PenaltyPanel()
         self.jobs = SlowJob(self)
         self.actions_by_key = make_actions(self)
+        self.landmarks = LandmarkPanel(self.table, self.actions_by_key)
         self._dialogs = dialogs or Dialogs(self)
         self._recent = RecentFiles(settings)
         self._lay_out()
@@ -95,6 +78,14 @@ class MainWindow(QMainWindow):
         )
         self.guidance = Guidance(
             self.editor, self.presenter, self.documents, self._dialogs, self.guide_bar, self.hint
+        )
+        self.table_presenter = TablePresenter(
+            self.editor,
+            self.model,
+            self.landmarks,
+            self.actions_by_key,
+            self._dialogs,
+            self._say,
         )
         self._connect()
         self._restore_layout()
@@ -119,14 +110,16 @@ class MainWindow(QMainWindow):
         column.addWidget(self.guide_bar)
         column.addWidget(splitter, 1)
         self.setCentralWidget(centre)
-        self._add_dock("landmarks", "Landmarks", self.table, Qt.DockWidgetArea.RightDockWidgetArea)
+        self._add_dock(
+            "landmarks", "Landmarks", self.landmarks, Qt.DockWidgetArea.RightDockWidgetArea
+        )
         penalty = self._add_dock(
             "penalty", "Warping penalty", self.panel, Qt.DockWidgetArea.BottomDockWidgetArea
         )
         # The table keeps the whole height of the right edge.
         self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
         self.resizeDocks(
-            [self.findChild(QDockWidget, "landmarks")], [400], Qt.Orientation.Horizontal
+            [self.findChild(QDockWidget, "landmarks")], [430], Qt.Orientation.Horizontal
         )
         self.resizeDocks([penalty], [90], Qt.Orientation.Vertical)
         self._make_menus()
@@ -143,50 +136,20 @@ class MainWindow(QMainWindow):
         return dock
 
     def _make_menus(self) -> None:
-        actions = self.actions_by_key
         # Kept: Python must not let go of a menu that Qt still shows.
-        self._menus = [
-            self.menuBar().addMenu(title) for title in ("&File", "&Edit", "&View", "&Help")
-        ]
-        file, edit, view, about = self._menus
-
-        def fill(menu: QMenu, keys: str) -> None:
-            menus.fill(menu, actions, keys)
-
-        fill(file, "open_source open_destination - open_session")
-        self._recent_menu = file.addMenu("Open &Recent")
+        self._menus = make_menus(self.menuBar(), self.actions_by_key)
+        self._recent_menu = self._menus["@recent"]
         self._recent_menu.aboutToShow.connect(self._fill_recent)
-        fill(file, "open_sample - save save_as -")
-        fill(file.addMenu("&Import"), "import_source import_destination import_pairs")
-        fill(
-            file.addMenu("E&xport Landmarks"),
-            "export_source export_destination export_pairs export_passengers",
-        )
-        fill(file, "export_mesh - quit")
-        fill(
-            edit,
-            "undo redo - rename delete_side delete_landmark - accept_ghost snap lock set_nudge - "
-            "load_template guide set_pattern - select_none - swap_sides",
-        )
-        fill(edit.addMenu("&Mirror Source"), "mirror_x mirror_y mirror_z")
-        menus.fill_view(view, actions)
         for dock in self.findChildren(QDockWidget):
-            view.addAction(dock.toggleViewAction())
-        fill(about, "shortcuts - about_penalty about")
-        self.shortcuts = ShortcutOverlay(
-            self, [(menu.title().replace("&", ""), menus.actions_of(menu)) for menu in self._menus]
-        )
+            self._menus["&View"].addAction(dock.toggleViewAction())
+        self.shortcuts = ShortcutOverlay(self, shortcut_groups(self.actions_by_key))
 
     def _make_toolbar(self) -> None:
         bar = QToolBar("Tools", self)
         bar.setObjectName("tools")
         bar.setMovable(False)
         bar.setIconSize(QSize(20, 20))
-        for key in _TOOLBAR:
-            if key is None:
-                bar.addSeparator()
-            else:
-                bar.addAction(self.actions_by_key[key])
+        fill_toolbar(bar, self.actions_by_key)
         self.opacity = QSlider(Qt.Orientation.Horizontal)
         self.opacity.setRange(5, 100)
         self.opacity.setFixedWidth(110)
@@ -234,7 +197,6 @@ class MainWindow(QMainWindow):
             "quit": self.close,
             "undo": editor.undo,
             "redo": editor.redo,
-            "rename": self._rename,
             "delete_side": self.presenter.requests.delete_side,
             "delete_landmark": self.presenter.requests.delete_landmarks,
             "accept_ghost": self.presenter.requests.accept_ghost,
@@ -277,12 +239,6 @@ class MainWindow(QMainWindow):
         if self.documents.may_lose_changes():
             self.documents.open_session(sample_session(), as_new=True)
 
-    def _rename(self) -> None:
-        names = self.editor.selection.names
-        if names and (row := self.editor.session.index_of(names[0])) is not None:
-            self.table.setFocus()
-            self.table.edit(self.model.index(row, 0))
-
     def _say(self, text: str) -> None:
         self.statusBar().showMessage(text, 6000)
 
@@ -318,7 +274,7 @@ class MainWindow(QMainWindow):
             shortcut = actions[key].shortcut().toString()
             actions[key].setToolTip(f"{plain} {label or ''}".strip() + f" ({shortcut})")
         has_selection = bool(editor.selection.names)
-        for key in ("rename", "delete_side", "delete_landmark", "select_none"):
+        for key in ("delete_side", "delete_landmark", "select_none"):
             actions[key].setEnabled(has_selection)
         session = editor.session
         actions["export_mesh"].setEnabled(
@@ -373,6 +329,7 @@ class MainWindow(QMainWindow):
         self._settings.setValue("layout", self.saveState())
         self.jobs.shut_down()
         self.presenter.shut_down()
+        self.table_presenter.shut_down()
         self._bone_edits.shut_down()
         self.view_controls.shut_down()
         for signal in (self.editor.session_changed, self.editor.selection_changed):

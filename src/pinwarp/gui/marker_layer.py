@@ -136,7 +136,7 @@ class MarkerLayer(QWidget):
             painter.setPen(pen)
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawEllipse(at, 8, 8)
-        draw_label(painter, f"{ghost.name}?  Space accepts", at, self.width())
+        draw_label(painter, f"{ghost.name}?", at, self.width())
 
     def _paint_markers(self, painter: QPainter) -> None:
         places, hidden = self.places(), self.hidden()
@@ -156,6 +156,6 @@ class MarkerLayer(QWidget):
         for i in order:
             if self._markers[i].labelled:
                 painter.setOpacity(0.5 if hidden[i] else 1.0)
-                at = QPointF(*places[i])
-                draw_label(painter, self._markers[i].name, at, self.width(), self.radius)
+                label = self._markers[i].name
+                draw_label(painter, label, QPointF(*places[i]), self.width(), self.radius)
         painter.setOpacity(1.0)

@@ -70,7 +70,11 @@ def marker_pixmap(
 @functools.lru_cache(maxsize=16)
 def state_icon(state: LandmarkState) -> QIcon:
     """Return the sign of a state as an icon for lists."""
-    return QIcon(marker_pixmap(state, selected=False, hidden=False, ratio=2.0))
+    pixmap = marker_pixmap(state, selected=False, hidden=False, ratio=2.0)
+    icon = QIcon(pixmap)
+    # Else Qt tints it in a selected row.
+    icon.addPixmap(pixmap, QIcon.Mode.Selected)
+    return icon
 
 
 def draw_label(

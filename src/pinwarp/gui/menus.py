@@ -1,49 +1,93 @@
-"""Filling menus from keys of actions."""
+"""Where the actions stand: menus, toolbar, and the groups on the sheet of shortcuts."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from qtpy.QtCore import Qt
 from qtpy.QtGui import QAction
-from qtpy.QtWidgets import QMenu
+from qtpy.QtWidgets import QMenu, QMenuBar, QToolBar
 
-# Inner menus by their titles; "-" is a line between groups.
-_VIEW: tuple[str | tuple[str, str], ...] = (
-    "overlay",
-    ("&Show Source", "show_warp show_rigid show_similarity"),
-    "- fit focus",
-    ("&Look From", "view_front view_back - view_left view_right - view_top view_bottom"),
-    ("Ca&meras", "link_linked link_rotation link_free - link_next"),
-    "- section wireframe - markers_larger markers_smaller -",
+SEPARATOR = "-"
+# A key that begins with @ is a menu inside the menu.
+MENUS = {
+    "&File": (
+        "open_source open_destination - open_session @recent open_sample - save save_as - "
+        "@import @export export_mesh - quit"
+    ),
+    "&Edit": (
+        "undo redo - copy paste - rename rename_many note - "
+        "toggle_enabled toggle_locked toggle_role - move_up move_down - "
+        "delete_side delete_landmark - select_none filter - swap_sides @mirror"
+    ),
+    "&Place": (
+        "accept_ghost next_incomplete - load_template guide set_pattern - snap set_nudge lock"
+    ),
+    "&View": (
+        "overlay @shown - fit focus @sides @cameras - section wireframe - "
+        "markers_larger markers_smaller - show_coordinates -"
+    ),
+    "&Help": "shortcuts - about_penalty about",
+}
+SUBMENUS = {
+    "@recent": ("Open &Recent", ""),
+    "@import": ("&Import", "import_source import_destination import_pairs"),
+    "@mirror": ("&Mirror Source", "mirror_x mirror_y mirror_z"),
+    "@shown": ("&Show Source", "show_warp show_rigid show_similarity"),
+    "@sides": (
+        "&Look From",
+        "view_front view_back - view_left view_right - view_top view_bottom",
+    ),
+    "@cameras": ("Ca&meras", "link_linked link_rotation link_free - link_next"),
+    "@export": (
+        "E&xport Landmarks",
+        "export_source export_destination export_pairs export_passengers",
+    ),
+}
+TOOLBAR = (
+    "open_session open_source open_destination save export_mesh - "
+    "undo redo delete_side - lock guide - fit link_next overlay"
 )
 
 
-def fill(menu: QMenu, actions: Mapping[str, QAction], keys: str) -> None:
-    """Append actions to a menu; ``-`` is a separator."""
+def make_menus(bar: QMenuBar, actions: Mapping[str, QAction]) -> dict[str, QMenu]:
+    """Fill a menu bar.
+
+    Returns
+    -------
+    dict
+        The menus by title, or by key for those inside others; to be kept while the bar lives.
+    """
+    menus: dict[str, QMenu] = {}
+    for title, keys in MENUS.items():
+        menus[title] = bar.addMenu(title)
+        for key in keys.split():
+            if key in SUBMENUS:
+                name, inner = SUBMENUS[key]
+                menus[key] = menus[title].addMenu(name)
+                _fill(menus[key], inner, actions)
+            else:
+                _fill(menus[title], key, actions)
+    return menus
+
+
+def fill_toolbar(bar: QToolBar, actions: Mapping[str, QAction]) -> None:
+    """Fill a toolbar."""
+    _fill(bar, TOOLBAR, actions)
+
+
+def _fill(place: QMenu | QToolBar, keys: str, actions: Mapping[str, QAction]) -> None:
     for key in keys.split():
-        if key == "-":
-            menu.addSeparator()
+        if key == SEPARATOR:
+            place.addSeparator()
         else:
-            menu.addAction(actions[key])
+            place.addAction(actions[key])
 
 
-def fill_view(menu: QMenu, actions: Mapping[str, QAction]) -> None:
-    """Fill the View menu."""
-    for entry in _VIEW:
-        if isinstance(entry, str):
-            fill(menu, actions, entry)
-        else:
-            title, keys = entry
-            fill(menu.addMenu(title), actions, keys)
-
-
-def actions_of(menu: QMenu) -> list[QAction]:
-    """Return the actions of a menu and of those inside it."""
-    # Not by QAction.menu(): PySide takes what that returns for its own and deletes the menu.
-    children = menu.findChildren(QMenu, options=Qt.FindChildOption.FindDirectChildrenOnly)
-    inner = {child.menuAction(): child for child in children}
-    found: list[QAction] = []
-    for action in menu.actions():
-        found.extend(actions_of(inner[action]) if action in inner else [action])
-    return found
+def shortcut_groups(actions: Mapping[str, QAction]) -> list[tuple[str, list[QAction]]]:
+    """Return the titles of the menus, and the actions below each in their order."""
+    groups = []
+    for title, keys in MENUS.items():
+        inner = " ".join(SUBMENUS[key][1] if key in SUBMENUS else key for key in keys.split())
+        found = [actions[key] for key in inner.split() if key != SEPARATOR]
+        groups.append((title.replace("&", ""), found))
+    return groups

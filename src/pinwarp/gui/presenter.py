@@ -100,8 +100,6 @@ class Presenter:
         editor.view_changed.connect(self._on_looks)
         self._warps.computed.connect(self._on_warp)
         self._warps.failed.connect(self._on_failure)
-        self._model.rename_requested.connect(self.requests.rename)
-        self._model.enable_requested.connect(self.requests.enable)
         self._table.selection_requested.connect(
             lambda names, side: editor.select(*names, side=Side(side) if side else None)
         )

@@ -45,3 +45,8 @@ def is_dark() -> bool:
 def text_colour() -> QColor:
     """Return the colour of text on the window."""
     return QGuiApplication.palette().color(QPalette.ColorRole.WindowText)
+
+
+def selected_text_colour() -> QColor:
+    """Return the colour of text on selected rows."""
+    return QGuiApplication.palette().color(QPalette.ColorRole.HighlightedText)

@@ -162,8 +162,8 @@ def rows_of(lines: Sequence[str], separator: str, first_line: int = 1) -> Iterat
             start = broken + 1
 
 
-def csv_line(cells: Iterable[str]) -> str:
-    r"""Return one line of comma-separated cells, quoted per RFC 4180 where they need it.
+def csv_line(cells: Iterable[str], separator: str = ",") -> str:
+    r"""Return one line of separated cells, quoted per RFC 4180 where they need it.
 
     Examples
     --------
@@ -174,7 +174,7 @@ def csv_line(cells: Iterable[str]) -> str:
         '"' + cell.replace('"', '""') + '"' if _NEEDS_QUOTES.search(cell) else cell
         for cell in cells
     ]
-    return ",".join(quoted) + "\n"
+    return separator.join(quoted) + "\n"
 
 
 def refuse_binary(path: str | Path, text: str) -> None:

@@ -56,8 +56,12 @@ class ViewState:
         What new landmarks are called.
     nudge
         How far an arrow key moves a landmark, in mesh units; None for a share of the bone.
+    link
+        How the cameras of the two sides move together.
     marker_radius
         Of the landmarks' signs, in logical pixels.
+    wireframe
+        Whether the bones are drawn as edges only.
     section
         Share of the depth that the cross-section clips away; None without a cross-section.
     """
@@ -66,14 +70,14 @@ class ViewState:
     overlay_kind: OverlayKind = OverlayKind.WARP
     opacity: float = 0.55
     hovered: str | None = None
-    link: LinkMode = LinkMode.LINKED
-    marker_radius: float = 6.0
-    wireframe: bool = False
-    section: float | None = None
     locked: bool = False
     guided: str | None = None
     name_pattern: str = NAME_PATTERN
     nudge: float | None = None
+    link: LinkMode = LinkMode.LINKED
+    marker_radius: float = 6.0
+    wireframe: bool = False
+    section: float | None = None
 
 
 class Editor:

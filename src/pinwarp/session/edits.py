@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 
 from pinwarp.core.errors import LandmarkError
 from pinwarp.core.landmarks import Landmark, Position, Role, Side
 from pinwarp.core.mirror import mirrored_mesh, mirrored_points, toggled
 from pinwarp.core.spline import PenaltyConvention, check_penalty
+from pinwarp.io.clipboard_table import PastedLandmark
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session.session import Session
 
@@ -116,12 +117,41 @@ def rename(session: Session, name: str, new_name: str) -> Session:
     LandmarkError
         When the new name is empty or taken.
     """
-    new_name = new_name.strip()
-    if not new_name:
-        raise LandmarkError("A landmark needs a name.")
-    if new_name != name and session.index_of(new_name) is not None:
-        raise LandmarkError(f"There is already a landmark called {new_name}: choose another name.")
-    return _changed(session, name, lambda landmark: replace(landmark, name=new_name))
+    return rename_many(session, {name: new_name})
+
+
+def rename_many(session: Session, new_names: Mapping[str, str]) -> Session:
+    """Give landmarks other names, all at once: they may take each other's.
+
+    Raises
+    ------
+    LandmarkError
+        When a new name is empty, taken, or given twice.
+
+    Examples
+    --------
+    >>> session = Session(landmarks=(Landmark("left"), Landmark("right")))
+    >>> swapped = rename_many(session, {"left": "right", "right": "left"})
+    >>> [landmark.name for landmark in swapped.landmarks]
+    ['right', 'left']
+    """
+    taken = {landmark.name for landmark in session.landmarks} - set(new_names)
+    given: set[str] = set()
+    for new_name in map(str.strip, new_names.values()):
+        if not new_name:
+            raise LandmarkError("A landmark needs a name.")
+        if new_name in taken:
+            raise LandmarkError(
+                f"There is already a landmark called {new_name}: choose another name."
+            )
+        if new_name in given:
+            raise LandmarkError(f"Two landmarks would be called {new_name}.")
+        given.add(new_name)
+    return _all_changed(
+        session,
+        new_names,
+        lambda landmark: replace(landmark, name=new_names[landmark.name].strip()),
+    )
 
 
 def set_enabled(session: Session, names: Iterable[str], enabled: bool) -> Session:
@@ -263,6 +293,26 @@ def import_pairs(session: Session, landmarks: Iterable[Landmark]) -> Session:
         placed = [landmark for landmark in arriving if landmark.position(side) is not None]
         session = import_side(session, side, placed)
     return session
+
+
+def paste(session: Session, rows: Iterable[PastedLandmark]) -> Session:
+    """Bring in rows of a table: known names are changed, others become new landmarks at the end.
+
+    Examples
+    --------
+    >>> session = Session(landmarks=(Landmark("head"),))
+    >>> rows = [PastedLandmark(2, "fovea"), PastedLandmark(3, "head", {"enabled": False})]
+    >>> [(x.name, x.enabled) for x in paste(session, rows).landmarks]
+    [('head', False), ('fovea', True)]
+    """
+    arriving = {row.name: row for row in rows}
+    known = {landmark.name for landmark in session.landmarks}
+    merged = tuple(
+        arriving[landmark.name].onto(landmark) if landmark.name in arriving else landmark
+        for landmark in session.landmarks
+    )
+    new = tuple(row.onto(Landmark(name)) for name, row in arriving.items() if name not in known)
+    return replace(session, landmarks=merged + new)
 
 
 def _set_of(names: Iterable[str]) -> set[str]:

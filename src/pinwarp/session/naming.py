@@ -1,0 +1,70 @@
+"""New names for many landmarks at once: by a pattern, or by finding and replacing."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import partial
+
+from pinwarp.core.errors import LandmarkError
+
+_FIELD = re.compile(r"\{([^{}]*)\}")
+_NUMBER = re.compile(r"n(?::0?(\d))?")
+
+
+def names_by_pattern(names: Sequence[str], pattern: str, first: int = 1) -> dict[str, str]:
+    """Return a new name for each by a pattern.
+
+    Parameters
+    ----------
+    names
+        The names as they are, in order.
+    pattern
+        ``{name}`` stands for the name as it is, ``{n}`` for a number that counts up, and
+        ``{n:02}`` for one of two digits.
+    first
+        The first number.
+
+    Raises
+    ------
+    LandmarkError
+        When there are braces that mean nothing.
+
+    Examples
+    --------
+    >>> names_by_pattern(["head", "neck"], "{name}_l")
+    {'head': 'head_l', 'neck': 'neck_l'}
+    >>> names_by_pattern(["head", "neck"], "point_{n:02}", first=9)
+    {'head': 'point_09', 'neck': 'point_10'}
+    """
+    for inside in _FIELD.findall(pattern):
+        if inside != "name" and not _NUMBER.fullmatch(inside):
+            raise LandmarkError(
+                f"{{{inside}}} means nothing here: use {{name}}, {{n}} or {{n:02}}."
+            )
+    if set("{}") & set(_FIELD.sub("", pattern)):
+        raise LandmarkError("A brace is open: use {name}, {n} or {n:02}.")
+    return {
+        name: _FIELD.sub(partial(_filled, name, number), pattern).strip()
+        for number, name in enumerate(names, first)
+    }
+
+
+def _filled(name: str, number: int, found: re.Match[str]) -> str:
+    if found[1] == "name":
+        return name
+    digits = _NUMBER.fullmatch(found[1])
+    return f"{number:0{int(digits[1] or 0) if digits else 0}d}"
+
+
+def names_by_replacing(names: Sequence[str], find: str, replacement: str) -> dict[str, str]:
+    """Return the names with every occurrence of a text replaced.
+
+    Examples
+    --------
+    >>> names_by_replacing(["head_r", "neck_r"], "_r", "_l")
+    {'head_r': 'head_l', 'neck_r': 'neck_l'}
+    """
+    if not find:
+        return {name: name for name in names}
+    return {name: name.replace(find, replacement).strip() for name in names}
