@@ -14,6 +14,7 @@ from qtpy.QtCore import QPointF, QRectF, Qt
 from qtpy.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen
 from qtpy.QtWidgets import QWidget
 
+from pinwarp.core.landmarks import Position
 from pinwarp.gui import theme
 from pinwarp.gui.marker_painting import RADIUS, draw_label, extent, marker_pixmap
 from pinwarp.gui.scale_bar import paint_scale_bar
@@ -37,7 +38,8 @@ class MarkerLayer(QWidget):
         self.unit = ""
         self.radius = RADIUS
         self._markers: tuple[Marker, ...] = ()
-        self._hidden = np.zeros(0, dtype=bool)
+        # Which places the bone hides, as long as the camera stands still.
+        self._hidden: dict[Position, bool] = {}
         self._hidden_for: object = None
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.setAttribute(Qt.WidgetAttribute.WA_NoSystemBackground)
@@ -50,7 +52,6 @@ class MarkerLayer(QWidget):
     def set_markers(self, markers: tuple[Marker, ...]) -> None:
         """Show other landmarks."""
         self._markers = markers
-        self._hidden_for = None
         self.update()
 
     def places(self) -> NDArray:
@@ -63,10 +64,12 @@ class MarkerLayer(QWidget):
         """Return which landmarks lie behind the surface as the camera stands now."""
         key = self._canvas.view_key()
         if key != self._hidden_for:
-            positions = np.array([marker.position for marker in self._markers]).reshape(-1, 3)
-            self._hidden = self._canvas.behind_surface(positions)
-            self._hidden_for = key
-        return self._hidden
+            self._hidden, self._hidden_for = {}, key
+        new = [x.position for x in self._markers if x.position not in self._hidden]
+        if new:
+            found = self._canvas.behind_surface(np.array(new))
+            self._hidden.update(zip(new, found.tolist(), strict=True))
+        return np.array([self._hidden[x.position] for x in self._markers], dtype=bool)
 
     def nearest(self, at: QPointF, within: float) -> Marker | None:
         """Return the seen landmark nearest to a place on the screen, if any is near enough."""
