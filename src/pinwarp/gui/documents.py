@@ -1,42 +1,35 @@
-"""Files and the session: open, import, save, export, with every question and message about them."""
+"""Files and the session: open, import, save, with every question and message about them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
-
-from psygnal import Signal
 
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
-from pinwarp.gui.dialogs import Answer, Dialogs
-from pinwarp.gui.jobs import Cancelled, SlowJob
+from pinwarp.gui.dialogs import Answer
+from pinwarp.gui.file_tasks import (
+    LANDMARK_FILES,
+    MESH_FILES,
+    SESSION_FILES,
+    FileTasks,
+    Progress,
+    in_words,
+)
+from pinwarp.gui.jobs import Cancelled
 from pinwarp.gui.recent_files import RecentFiles
 from pinwarp.gui.surface import Surface
 from pinwarp.io.file_names import SESSION_SUFFIX, is_session
-from pinwarp.io.landmark_formats.opensim_creator import (
-    LandmarkReading,
-    read_landmarks,
-    write_pairs,
-    write_side,
-)
-from pinwarp.io.meshes import MESH_SUFFIXES, MeshFile, read_mesh, write_mesh
+from pinwarp.io.landmark_formats.opensim_creator import LandmarkReading, read_landmarks
+from pinwarp.io.meshes import MESH_SUFFIXES, MeshFile, read_mesh
 from pinwarp.io.session_file import MeshReference, read_session, write_session
 from pinwarp.io.template import read_template
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.guide import next_incomplete, with_template
-from pinwarp.session.results import warped_mesh, warped_passengers
 from pinwarp.session.session import from_record, to_record
-
-_MESHES = "Meshes ({});;All files (*)".format(" ".join(f"*{suffix}" for suffix in MESH_SUFFIXES))
-_SESSIONS = f"Sessions (*{SESSION_SUFFIX});;All files (*)"
-_LANDMARKS = "Landmarks (*.csv *.txt);;All files (*)"
-
-Progress = Callable[[float, str], None]
 
 
 @dataclass(frozen=True)
@@ -54,35 +47,29 @@ class Documents:
     """Carries files into the editor and out of it.
 
     Reading runs as a job; the session changes only once everything was read, so that a bad file
-    loses nothing. ``said`` emits short messages for the status bar.
+    loses nothing.
 
     Parameters
     ----------
     editor
         What is read and changed.
-    jobs
-        Runs the slow parts.
-    dialogs
-        Asks and tells.
+    tasks
+        Runs, asks and tells.
     recent
         Remembers sessions.
     keep_surface
         Called with a mesh that was read and its surface, made ready in the job.
     """
 
-    said = Signal(str)
-
     def __init__(
         self,
         editor: Editor,
-        jobs: SlowJob,
-        dialogs: Dialogs,
+        tasks: FileTasks,
         recent: RecentFiles,
         keep_surface: Callable[[Mesh, Surface], None],
     ) -> None:
         self._editor = editor
-        self._jobs = jobs
-        self._dialogs = dialogs
+        self._tasks = tasks
         self._recent = recent
         self._keep_surface = keep_surface
 
@@ -128,7 +115,7 @@ class Documents:
                 self.import_landmarks(path, side)
             else:
                 suffixes = ", ".join(MESH_SUFFIXES)
-                self._dialogs.tell_error(
+                self._tasks.dialogs.tell_error(
                     "Cannot open this file",
                     f"{path.name} is neither a mesh ({suffixes}) nor landmarks or a session "
                     "(.csv).",
@@ -136,7 +123,9 @@ class Documents:
 
     def ask_and_open_mesh(self, side: Side) -> None:
         """Ask for a mesh and open it."""
-        path = self._dialogs.ask_open(f"Open the {side.value} mesh", _MESHES, self._folder())
+        path = self._tasks.dialogs.ask_open(
+            f"Open the {side.value} mesh", MESH_FILES, self._tasks.folder()
+        )
         if path is not None:
             self.open_mesh(side, path)
 
@@ -146,15 +135,17 @@ class Documents:
         def arrived(file: MeshFile) -> None:
             session = edits.set_mesh(self._editor.committed, side, file)
             self._editor.commit(session, f"Open {side.value} mesh")
-            self.said.emit(_mesh_summary(file))
+            self._tasks.said.emit(_mesh_summary(file))
 
-        self._run(f"Reading {path.name}", lambda progress: self._read_mesh(path, progress), arrived)
+        self._tasks.run(
+            f"Reading {path.name}", lambda progress: self._read_mesh(path, progress), arrived
+        )
 
     def ask_and_open_session(self) -> None:
         """Ask for a session and open it."""
         if not self.may_lose_changes():
             return
-        path = self._dialogs.ask_open("Open a session", _SESSIONS, self._folder())
+        path = self._tasks.dialogs.ask_open("Open a session", SESSION_FILES, self._tasks.folder())
         if path is not None:
             self.open_session(path)
 
@@ -163,7 +154,7 @@ class Documents:
         try:
             record = read_session(path)
         except (PinwarpError, OSError) as error:
-            self._dialogs.tell_error("Cannot open the session", _words(error))
+            self._tasks.dialogs.tell_error("Cannot open the session", in_words(error))
             return
         places = {
             Side.SOURCE: self._locate(Side.SOURCE, record.source_mesh),
@@ -188,24 +179,24 @@ class Documents:
             self._editor.replace_all(session, None if as_new else path)
             if not as_new:
                 self._recent.add(path)
-            self.said.emit(f"Opened {path.name}: {len(session.pairs)} pairs")
+            self._tasks.said.emit(f"Opened {path.name}: {len(session.pairs)} pairs")
             problems = [str(error) for error in files.values() if isinstance(error, PinwarpError)]
             if problems:
-                self._dialogs.tell_error("Opened without a mesh", "\n".join(problems))
+                self._tasks.dialogs.tell_error("Opened without a mesh", "\n".join(problems))
 
-        self._run(f"Opening {path.name}", read, arrived)
+        self._tasks.run(f"Opening {path.name}", read, arrived)
 
     def _locate(self, side: Side, reference: MeshReference | None) -> Path | None:
         if reference is None:
             return None
         if reference.path.is_file():
             return reference.path
-        return self._dialogs.ask_missing_mesh(side.value, reference.path)
+        return self._tasks.dialogs.ask_missing_mesh(side.value, reference.path)
 
     def ask_and_import_landmarks(self, side: Side | None) -> None:
         """Ask for a landmark file and read it; without a side it must hold pairs."""
         what = f"{side.value} landmarks" if side is not None else "landmark pairs"
-        path = self._dialogs.ask_open(f"Import {what}", _LANDMARKS, self._folder())
+        path = self._tasks.dialogs.ask_open(f"Import {what}", LANDMARK_FILES, self._tasks.folder())
         if path is not None:
             self.import_landmarks(path, side)
 
@@ -214,7 +205,7 @@ class Documents:
 
         def arrived(reading: LandmarkReading) -> None:
             if side is None and not reading.is_pairs:
-                self._dialogs.tell_error(
+                self._tasks.dialogs.tell_error(
                     "These are not pairs",
                     f"{path.name} holds positions for one mesh only: import it as source or "
                     "destination landmarks.",
@@ -231,7 +222,9 @@ class Documents:
             self._report_import(path, reading)
 
         chosen = side or Side.SOURCE
-        self._run(f"Reading {path.name}", lambda _progress: read_landmarks(path, chosen), arrived)
+        self._tasks.run(
+            f"Reading {path.name}", lambda _progress: read_landmarks(path, chosen), arrived
+        )
 
     def ask_and_load_template(self, loaded: Callable[[str | None], None]) -> None:
         """Ask for a list of names and add those that are missing, to be placed.
@@ -242,28 +235,28 @@ class Documents:
             Called with the first landmark that is not complete then.
         """
         filters = "Landmark lists (*.csv *.txt);;All files (*)"
-        path = self._dialogs.ask_open("Load a template", filters, self._folder())
+        path = self._tasks.dialogs.ask_open("Load a template", filters, self._tasks.folder())
         if path is None:
             return
 
         def arrived(names: tuple[str, ...]) -> None:
             session = with_template(self._editor.committed, names)
             self._editor.commit(session, f"Load template {path.name}")
-            self.said.emit(f"{len(names)} names from {path.name}")
+            self._tasks.said.emit(f"{len(names)} names from {path.name}")
             loaded(next_incomplete(session, None))
 
-        self._run(f"Reading {path.name}", lambda _progress: read_template(path), arrived)
+        self._tasks.run(f"Reading {path.name}", lambda _progress: read_template(path), arrived)
 
     def _report_import(self, path: Path, reading: LandmarkReading) -> None:
         count = len(reading.landmarks)
         what = "pair" if reading.is_pairs else "landmark"
-        self.said.emit(f"{count} {what}{'' if count == 1 else 's'} from {path.name}")
+        self._tasks.said.emit(f"{count} {what}{'' if count == 1 else 's'} from {path.name}")
         if reading.skipped:
             lines = [
                 f"Line {line.line}: {line.reason}\n    {line.text}" for line in reading.skipped
             ]
             number = len(lines)
-            self._dialogs.tell(
+            self._tasks.dialogs.tell(
                 "Some lines were skipped",
                 f"{count} {what}s were read from {path.name}; "
                 f"{number} line{' was' if number == 1 else 's were'} skipped.",
@@ -276,7 +269,7 @@ class Documents:
         """Ask about unsaved changes; False when the user would rather stay."""
         if not self._editor.is_dirty:
             return True
-        answer = self._dialogs.ask_unsaved(self.name)
+        answer = self._tasks.dialogs.ask_unsaved(self.name)
         if answer is Answer.SAVE:
             return self.save()
         return answer is Answer.DISCARD
@@ -287,8 +280,10 @@ class Documents:
 
     def save_as(self) -> bool:
         """Ask where to save; say whether it was saved."""
-        proposal = self._editor.path or (self._folder() / f"{self.name.lower()}{SESSION_SUFFIX}")
-        path = self._dialogs.ask_save("Save the session", _SESSIONS, proposal)
+        proposal = self._editor.path or (
+            self._tasks.folder() / f"{self.name.lower()}{SESSION_SUFFIX}"
+        )
+        path = self._tasks.dialogs.ask_save("Save the session", SESSION_FILES, proposal)
         if path is None:
             return False
         if not is_session(path):
@@ -296,71 +291,14 @@ class Documents:
         return self._save_to(path)
 
     def _save_to(self, path: Path) -> bool:
-        if not self._write(lambda: write_session(path, to_record(self._editor.committed)), path):
+        if not self._tasks.write(
+            lambda: write_session(path, to_record(self._editor.committed)), path
+        ):
             return False
         self._editor.mark_saved(path)
         self._recent.add(path)
-        self.said.emit(f"Saved {path.name}")
+        self._tasks.said.emit(f"Saved {path.name}")
         return True
-
-    def export_landmarks(self, side: Side | None) -> None:
-        """Ask for a file and write the landmarks of one side, or the pairs."""
-        what = f"{side.value}" if side is not None else "pairs"
-        proposal = self._folder() / f"{what}.landmarks.csv"
-        path = self._dialogs.ask_save(f"Export {what} landmarks", _LANDMARKS, proposal)
-        if path is None:
-            return
-        landmarks = self._editor.committed.landmarks
-        write = (
-            (lambda: write_pairs(path, landmarks))
-            if side is None
-            else (lambda: write_side(path, landmarks, side))
-        )
-        if self._write(write, path):
-            self.said.emit(f"Exported {path.name}")
-
-    def export_passengers(self) -> None:
-        """Ask for a file and write where the warp carries the passengers."""
-        proposal = self._folder() / "passengers_warped.landmarks.csv"
-        path = self._dialogs.ask_save("Export the warped passengers", _LANDMARKS, proposal)
-        if path is None:
-            return
-
-        def write() -> None:
-            write_side(path, warped_passengers(self._editor.committed), Side.DESTINATION)
-
-        if self._write(write, path):
-            self.said.emit(f"Exported {path.name}")
-
-    def ask_and_export_mesh(self) -> None:
-        """Ask for a file and write the warped source mesh, in double precision."""
-        session = self._editor.committed
-        source = session.mesh_file(Side.SOURCE)
-        stem = source.path.stem if source is not None else "mesh"
-        suffix = source.path.suffix if source is not None else ".stl"
-        proposal = self._folder() / f"{stem}_warped{suffix}"
-        path = self._dialogs.ask_save("Export the warped mesh", _MESHES, proposal)
-        if path is not None:
-            self.export_mesh(path)
-
-    def export_mesh(self, path: Path) -> None:
-        """Write the warped source mesh."""
-        session = self._editor.committed
-
-        def write(progress: Progress) -> None:
-            progress(0.1, "warping")
-            mesh = warped_mesh(session)
-            progress(0.6, "writing")
-            write_mesh(path, mesh)
-
-        def arrived(_nothing: None) -> None:
-            pairs = len(session.pairs)
-            penalty = f"penalty {session.warping_penalty:.6g}"
-            self.said.emit(f"Exported {path.name} ({pairs} pairs, {penalty})")
-
-        self._run(f"Exporting {path.name}", write, arrived)
-
-    # What they share
 
     def _read_mesh(self, path: Path, progress: Progress) -> MeshFile:
         file = read_mesh(path, progress=lambda share, stage: progress(0.7 * share, stage))
@@ -369,46 +307,8 @@ class Documents:
         progress(1.0, "done")
         return file
 
-    def _run(
-        self, title: str, function: Callable[[Progress], Any], arrived: Callable[[Any], None]
-    ) -> None:
-        def failed(error: Exception) -> None:
-            if isinstance(error, Cancelled):
-                self.said.emit("Cancelled; nothing was changed")
-            elif isinstance(error, (PinwarpError, OSError)):
-                self._dialogs.tell_error(f"{title} failed", _words(error))
-            else:
-                raise error
-
-        self._jobs.run(title, function, arrived, failed)
-
-    def _write(self, write: Callable[[], None], path: Path) -> bool:
-        try:
-            write()
-        except (PinwarpError, OSError) as error:
-            self._dialogs.tell_error(
-                f"Cannot write {path.name}",
-                f"{_words(error)}\nNothing was lost: try another folder.",
-            )
-            return False
-        return True
-
-    def _folder(self) -> Path:
-        session = self._editor.committed
-        files: list[Path] = [
-            file.path for file in (session.destination, session.source) if file is not None
-        ]
-        path = self._editor.path or (files[0] if files else None)
-        return path.parent if path is not None else Path.home()
-
 
 def _mesh_summary(file: MeshFile) -> str:
     mesh = file.mesh
     text = f"{file.path.name}: {len(mesh.vertices):,} vertices, {len(mesh.faces):,} triangles"
     return "; ".join((text, *file.notes))
-
-
-def _words(error: Exception) -> str:
-    if isinstance(error, OSError) and error.strerror:
-        return f"{error.filename or 'The file'}: {error.strerror}."
-    return str(error)

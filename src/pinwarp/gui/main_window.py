@@ -26,6 +26,8 @@ from pinwarp.gui.actions import icon, make_actions
 from pinwarp.gui.bone_edits import BoneEdits
 from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Documents
+from pinwarp.gui.exports import Exports
+from pinwarp.gui.file_tasks import FileTasks
 from pinwarp.gui.guidance import Guidance
 from pinwarp.gui.guide_bar import GuideBar
 from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY
@@ -73,9 +75,11 @@ class MainWindow(QMainWindow):
         self._bone_edits = BoneEdits(self.editor, self.actions_by_key, self)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
         self.view_controls.add_to(self.findChild(QToolBar, "tools"), self.statusBar())
+        self._tasks = FileTasks(self.editor, self.jobs, self._dialogs)
         self.documents = Documents(
-            self.editor, self.jobs, self._dialogs, self._recent, self.presenter.keep_surface
+            self.editor, self._tasks, self._recent, self.presenter.keep_surface
         )
+        self.exports = Exports(self.editor, self._tasks)
         self.guidance = Guidance(
             self.editor, self.presenter, self.documents, self._dialogs, self.guide_bar, self.hint
         )
@@ -190,10 +194,10 @@ class MainWindow(QMainWindow):
             "import_source": lambda: documents.ask_and_import_landmarks(Side.SOURCE),
             "import_destination": lambda: documents.ask_and_import_landmarks(Side.DESTINATION),
             "import_pairs": lambda: documents.ask_and_import_landmarks(None),
-            "export_source": lambda: documents.export_landmarks(Side.SOURCE),
-            "export_destination": lambda: documents.export_landmarks(Side.DESTINATION),
-            "export_pairs": lambda: documents.export_landmarks(None),
-            "export_mesh": documents.ask_and_export_mesh,
+            "export_source": lambda: self.exports.export_landmarks(Side.SOURCE),
+            "export_destination": lambda: self.exports.export_landmarks(Side.DESTINATION),
+            "export_pairs": lambda: self.exports.export_landmarks(None),
+            "export_mesh": self.exports.ask_and_export_mesh,
             "quit": self.close,
             "undo": editor.undo,
             "redo": editor.redo,
@@ -204,7 +208,7 @@ class MainWindow(QMainWindow):
             "set_nudge": self.guidance.ask_nudge,
             "set_pattern": self.guidance.ask_pattern,
             "load_template": self.guidance.load_template,
-            "export_passengers": documents.export_passengers,
+            "export_passengers": self.exports.export_passengers,
             "shortcuts": self.shortcuts.toggle,
             "select_none": editor.select,
             "about": lambda: self._dialogs.tell("About pinwarp", ABOUT),
@@ -227,7 +231,7 @@ class MainWindow(QMainWindow):
         self.jobs.progressed.connect(self._on_job_progressed)
         self.jobs.ended.connect(self._on_job_ended)
         self.cancel.clicked.connect(self.jobs.cancel)
-        documents.said.connect(self._say)
+        self._tasks.said.connect(self._say)
         editor.session_changed.connect(self._on_session)
         editor.selection_changed.connect(self._on_session)
         editor.view_changed.connect(self._on_view)

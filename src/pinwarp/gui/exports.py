@@ -1,0 +1,87 @@
+"""What leaves the program: the warped mesh, landmarks of a side, pairs, passengers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pinwarp.core.landmarks import Side
+from pinwarp.gui.file_tasks import LANDMARK_FILES, MESH_FILES, FileTasks, Progress
+from pinwarp.io.landmark_formats.opensim_creator import write_pairs, write_side
+from pinwarp.io.meshes import write_mesh
+from pinwarp.session.editor import Editor
+from pinwarp.session.results import warped_mesh, warped_passengers
+
+
+class Exports:
+    """Asks for a file and writes.
+
+    Parameters
+    ----------
+    editor
+        Whose session is written.
+    tasks
+        Runs, asks and tells.
+    """
+
+    def __init__(self, editor: Editor, tasks: FileTasks) -> None:
+        self._editor = editor
+        self._tasks = tasks
+
+    def export_landmarks(self, side: Side | None) -> None:
+        """Ask for a file and write the landmarks of one side, or the pairs."""
+        what = f"{side.value}" if side is not None else "pairs"
+        proposal = self._tasks.folder() / f"{what}.landmarks.csv"
+        path = self._tasks.dialogs.ask_save(f"Export {what} landmarks", LANDMARK_FILES, proposal)
+        if path is None:
+            return
+        landmarks = self._editor.committed.landmarks
+        write = (
+            (lambda: write_pairs(path, landmarks))
+            if side is None
+            else (lambda: write_side(path, landmarks, side))
+        )
+        if self._tasks.write(write, path):
+            self._tasks.said.emit(f"Exported {path.name}")
+
+    def export_passengers(self) -> None:
+        """Ask for a file and write where the warp carries the passengers."""
+        proposal = self._tasks.folder() / "passengers_warped.landmarks.csv"
+        path = self._tasks.dialogs.ask_save(
+            "Export the warped passengers", LANDMARK_FILES, proposal
+        )
+        if path is None:
+            return
+
+        def write() -> None:
+            write_side(path, warped_passengers(self._editor.committed), Side.DESTINATION)
+
+        if self._tasks.write(write, path):
+            self._tasks.said.emit(f"Exported {path.name}")
+
+    def ask_and_export_mesh(self) -> None:
+        """Ask for a file and write the warped source mesh, in double precision."""
+        session = self._editor.committed
+        source = session.mesh_file(Side.SOURCE)
+        stem = source.path.stem if source is not None else "mesh"
+        suffix = source.path.suffix if source is not None else ".stl"
+        proposal = self._tasks.folder() / f"{stem}_warped{suffix}"
+        path = self._tasks.dialogs.ask_save("Export the warped mesh", MESH_FILES, proposal)
+        if path is not None:
+            self.export_mesh(path)
+
+    def export_mesh(self, path: Path) -> None:
+        """Write the warped source mesh."""
+        session = self._editor.committed
+
+        def write(progress: Progress) -> None:
+            progress(0.1, "warping")
+            mesh = warped_mesh(session)
+            progress(0.6, "writing")
+            write_mesh(path, mesh)
+
+        def arrived(_nothing: None) -> None:
+            pairs = len(session.pairs)
+            penalty = f"penalty {session.warping_penalty:.6g}"
+            self._tasks.said.emit(f"Exported {path.name} ({pairs} pairs, {penalty})")
+
+        self._tasks.run(f"Exporting {path.name}", write, arrived)
