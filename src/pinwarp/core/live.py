@@ -24,7 +24,7 @@ Matrix = NDArray[np.float64]
 Single = NDArray[np.float32]
 
 # Modes are left out of a sweep below this share of the bounding box of the landmarks.
-SWEEP_TOLERANCE = 5e-6
+SWEEP_TOLERANCE = 1e-5
 SWEEP_SAMPLES = 120
 
 

@@ -64,10 +64,11 @@ class Canvas(FastView):
             self.add_light(light)
 
     def update(self) -> None:
-        """Schedule a paint of the bones and of the sheet above them, in the same turn."""
+        """Schedule a paint of the bones, and where it is needed of the sheet above them."""
         super().update()
         layer = getattr(self, "layer", None)
-        if layer is not None:
+        # The sheet is as it was while the camera stands still, whatever the bones do.
+        if layer is not None and layer.painted_for != self.view_key():
             layer.update()
 
     def show_surface(self, surface: Surface | None) -> None:

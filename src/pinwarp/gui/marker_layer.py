@@ -37,6 +37,7 @@ class MarkerLayer(QWidget):
         self.ghost: Ghost | None = None
         self.unit = ""
         self.radius = RADIUS
+        self.painted_for: object = None
         self._markers: tuple[Marker, ...] = ()
         # Which places the bone hides, as long as the camera stands still.
         self._hidden: dict[Position, bool] = {}
@@ -83,6 +84,7 @@ class MarkerLayer(QWidget):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Paint title, scale bar, landmarks, labels and the hint of an empty viewport."""
+        self.painted_for = self._canvas.view_key()
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._paint_title(painter)

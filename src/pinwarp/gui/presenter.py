@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 import weakref
 from dataclasses import dataclass, replace
 from enum import Enum, auto
@@ -27,6 +28,9 @@ from pinwarp.session.editor import Editor, OverlayKind
 from pinwarp.session.ghost import Ghost, ghost_of
 from pinwarp.session.results import WarpInputs, WarpResult, WarpSolver
 from pinwarp.session.session import Session
+
+# A table of figures that run is not read: while something moves it is renewed this often (s).
+TABLE_PAUSE = 0.15
 
 
 class _Kind(Enum):
@@ -85,6 +89,7 @@ class Presenter:
         self._warps = LatestWins(self._warp)
         self._asked: tuple[WarpInputs, bool, OverlayKind] | None = None
         self.result: WarpResult | None = None
+        self._table_shown_at = 0.0
         self._shown: weakref.WeakKeyDictionary[Mesh, OverlayWarp] = weakref.WeakKeyDictionary()
         self.ghosts: dict[Side, Ghost | None] = dict.fromkeys(Side)
         self._known_ghosts: dict[Side, Ghost | None] = {}
@@ -265,7 +270,10 @@ class Presenter:
         if shaded.kind is not _Kind.PREVIEW and not self._editor.is_previewing:
             # Only now: the stand-in stays until the full mesh has caught up.
             viewport.set_warping(False)
-        self._model.show_result(result)
+        now = time.monotonic()
+        if shaded.kind is not _Kind.PREVIEW or now - self._table_shown_at > TABLE_PAUSE:
+            self._table_shown_at = now
+            self._model.show_result(result)
         self._panel.show_result(result)
         self._on_looks()
         if shaded.kind is _Kind.REST and result.factor is not None and not result.factor.has_modes:

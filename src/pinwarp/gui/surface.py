@@ -18,7 +18,7 @@ from pinwarp.core.mesh import Mesh
 TOLERANCE = 1e-9
 # Meshes above this many triangles get a stand-in of about that many for while things move.
 LARGE = 40_000
-STAND_IN = 16_000
+STAND_IN = 10_000
 
 
 class Surface:
