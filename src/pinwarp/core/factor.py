@@ -14,7 +14,8 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import qr, solve_triangular
+from scipy.linalg import solve_triangular
+from scipy.linalg.lapack import dgeqrf
 from scipy.spatial.distance import cdist
 
 from pinwarp.core.errors import LandmarkError
@@ -249,7 +250,7 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
 
     basis = np.column_stack([np.ones(count), unit @ directions.T])
     # Fewer landmarks than columns cannot happen: n centred landmarks span n - 1 directions.
-    (packed, tau), _ = qr(basis, mode="raw")
+    packed, tau, _, _ = dgeqrf(basis)
     columns = rank + 1
     reflectors = np.tril(packed[:, :columns], -1)
     reflectors[np.arange(columns), np.arange(columns)] = 1.0
@@ -281,7 +282,7 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
         upper=np.triu(packed[:columns, :columns]),
         corner=projected[:columns, :columns].copy(),
         coupling=projected[:columns, columns:].copy(),
-        bending=projected[columns:, columns:].copy(),
+        bending=projected[columns:, columns:],
         well_spaced=well_spaced,
     )
 
@@ -323,4 +324,5 @@ def affine_coordinates(factor: SourceFactor, points: Matrix) -> Matrix:
 
 def solve_upper(factor: SourceFactor, values: Matrix) -> Matrix:
     """Return ``R^-1 values``, the affine part from the top block."""
-    return np.asarray(solve_triangular(factor.upper, values, check_finite=False))
+    # Four by four at most: numpy is done before scipy has looked at its arguments.
+    return np.asarray(np.linalg.solve(factor.upper, values), dtype=np.float64)

@@ -8,7 +8,6 @@ penalty's sign is told in :mod:`pinwarp.tps3d`.
 
 from __future__ import annotations
 
-import contextlib
 import math
 from dataclasses import dataclass
 from enum import StrEnum
@@ -16,6 +15,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solve_triangular
+from scipy.linalg.lapack import dposv
 
 from pinwarp.core import kernel
 from pinwarp.core.alignment import fit_similarity
@@ -24,6 +24,10 @@ from pinwarp.core.factor import SourceFactor, as_positions, factorise, solve_upp
 from pinwarp.core.findings import Finding, FindingKind
 
 Matrix = NDArray[np.float64]
+
+# LAPACK called through scipy is the fastest Cholesky but keeps the interpreter's lock: 10 ms for
+# this many landmarks. Beyond, numpy's lets the window live.
+HOLDS_UP_LITTLE = 1200
 
 
 class PenaltyConvention(StrEnum):
@@ -224,12 +228,9 @@ def _bend(
     regularising = convention is PenaltyConvention.REGULARISING or penalty == 0
     if regularising and factor.well_spaced and not factor.has_modes:
         # One solve alone: Cholesky is a tenth of the eigendecomposition's work.
-        shifted = factor.bending + (penalty / factor.scale) * np.eye(len(values))
-        # numpy's Cholesky frees the GIL where scipy's holds it; clustered landmarks may defeat it.
-        with contextlib.suppress(np.linalg.LinAlgError):
-            lower = np.linalg.cholesky(shifted)
-            half = solve_triangular(lower, values, lower=True, check_finite=False)
-            return solve_triangular(lower, half, lower=True, trans=1, check_finite=False), ()
+        solved = _cholesky_solve(factor.bending, penalty / factor.scale, values)
+        if solved is not None:
+            return solved, ()
     eigenvalues, vectors = factor.modes
     shifts = eigenvalues + convention.sign * penalty
     usable = np.abs(shifts) > factor.smallest_mode
@@ -238,6 +239,22 @@ def _bend(
         findings = _check_poles(factor, penalty)
     inverse = np.divide(factor.scale, shifts, out=np.zeros_like(shifts), where=usable)
     return vectors @ (inverse[:, None] * (vectors.T @ values)), findings
+
+
+def _cholesky_solve(matrix: Matrix, shift: float, values: Matrix) -> Matrix | None:
+    """Solve ``(matrix + shift I) x = values``; None where clustered landmarks defeat it."""
+    shifted = matrix.copy()
+    shifted.flat[:: len(shifted) + 1] += shift
+    if len(shifted) <= HOLDS_UP_LITTLE:
+        # Symmetric: the transpose is the same matrix in the order that LAPACK wants.
+        _, solved, info = dposv(shifted.T, values, lower=1, overwrite_a=1)
+        return np.asarray(solved) if info == 0 else None
+    try:
+        lower = np.linalg.cholesky(shifted)
+    except np.linalg.LinAlgError:
+        return None
+    half = solve_triangular(lower, values, lower=True, check_finite=False)
+    return np.asarray(solve_triangular(lower, half, lower=True, trans=1, check_finite=False))
 
 
 def _check_poles(factor: SourceFactor, penalty: float) -> tuple[Finding, ...]:
