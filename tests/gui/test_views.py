@@ -523,6 +523,8 @@ def test_swapping_the_sides_takes_every_position_with_its_bone_and_can_be_undone
     assert user.window.viewports[SOURCE].layer.caption == "femur_subject.ply"
     vertices = after.mesh(SOURCE).vertices
     assert len(user.window.viewports[DESTINATION].overlay_points) == len(vertices)
+    shown = {marker.name for marker in user.window.viewports[DESTINATION].layer.markers}
+    assert shown == {x.name for x in after.landmarks if x.destination is not None}
     assert user.editor.undo_label == "Swap source and destination"
     user.press(Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     assert user.session == before

@@ -163,7 +163,8 @@ def _lock_tip(row: Row) -> str:
 
 def _placed(side: Side) -> Callable[[Row], str]:
     def text(row: Row) -> str:
-        if side is Side.DESTINATION and row.landmark.state is LandmarkState.PASSENGER:
+        passenger = row.landmark.state is LandmarkState.PASSENGER
+        if passenger and side is Side.DESTINATION and row.landmark.source is not None:
             return "carried"
         return "–" if row.landmark.position(side) is None else "✓"
 

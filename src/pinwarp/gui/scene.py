@@ -67,8 +67,13 @@ def scene_of(
         _marker(landmark, position, selection, view)
         for landmark in session.landmarks
         if (position := landmark.position(side)) is not None
-        # One that was a pair keeps its destination, but is not drawn there.
-        and (side is Side.SOURCE or landmark.state is not LandmarkState.PASSENGER)
+        # One that was a pair keeps its destination, but is not drawn there; one that came with
+        # its bone when the sides were swapped is.
+        and (
+            side is Side.SOURCE
+            or landmark.state is not LandmarkState.PASSENGER
+            or landmark.source is None
+        )
     ]
     if side is Side.DESTINATION and result is not None and result.passengers is not None:
         passengers = [
