@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import csv
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -319,6 +320,16 @@ def test_whatever_the_integers_nothing_non_finite_gets_out(count, seed, spread, 
         warp = solve_coefficients(source, destination, warping_penalty=penalty)
     assert np.isfinite(warp.warp_points(rng.normal(size=(20, 3)) * 5)).all()
     assert np.abs(warp.warp_points(source)).max() < 1e3
+
+
+def test_a_worker_solves_the_same_as_the_main_thread(monkeypatch):
+    monkeypatch.setattr("pinwarp.core.spline.HOLDS_UP_LITTLE", 0)
+    rng = np.random.default_rng(3)
+    source, destination = rng.normal(size=(30, 3)), rng.normal(size=(30, 3))
+    with ThreadPoolExecutor(1) as pool:
+        worked = pool.submit(solve_coefficients, source, destination, warping_penalty=0.1).result()
+    here = solve_coefficients(source, destination, warping_penalty=0.1)
+    assert np.allclose(worked.weights, here.weights, atol=1e-12)
 
 
 # The OPYNSIM convention

@@ -289,7 +289,7 @@ def combine_fields(
     out = np.empty(points.shape, np.float32)
     loops = loops or _worth(fields.values.size)
     if loops is not None:
-        with _threads_for(fields.values.size // 4):
+        with _threads_for(fields.values.size):
             loops.combine_fields(
                 fields.values, fields.scales, _single(shares), _single(affine), points, out
             )

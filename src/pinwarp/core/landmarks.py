@@ -118,7 +118,13 @@ class Landmark:
     @property
     def is_pair(self) -> bool:
         """Whether it takes part in the solve: complete, enabled and not a passenger."""
-        return self.is_complete and self.enabled and self.role is Role.PAIR
+        # Spelt out: it is asked of every landmark at every frame.
+        return (
+            self.enabled
+            and self.role is Role.PAIR
+            and self.source is not None
+            and self.destination is not None
+        )
 
     @property
     def state(self) -> LandmarkState:

@@ -9,6 +9,7 @@ penalty's sign is told in :mod:`pinwarp.tps3d`.
 from __future__ import annotations
 
 import math
+import threading
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -26,7 +27,7 @@ from pinwarp.core.findings import Finding, FindingKind
 Matrix = NDArray[np.float64]
 
 # LAPACK called through scipy is the fastest Cholesky but keeps the interpreter's lock: 10 ms for
-# this many landmarks. Beyond, numpy's lets the window live.
+# this many landmarks. Beyond, a worker takes numpy's, so that the window lives meanwhile.
 HOLDS_UP_LITTLE = 1200
 
 
@@ -245,7 +246,8 @@ def _cholesky_solve(matrix: Matrix, shift: float, values: Matrix) -> Matrix | No
     """Solve ``(matrix + shift I) x = values``; None where clustered landmarks defeat it."""
     shifted = matrix.copy()
     shifted.flat[:: len(shifted) + 1] += shift
-    if len(shifted) <= HOLDS_UP_LITTLE:
+    in_worker = threading.current_thread() is not threading.main_thread()
+    if len(shifted) <= HOLDS_UP_LITTLE or not in_worker:
         # Symmetric: the transpose is the same matrix in the order that LAPACK wants.
         _, solved, info = dposv(shifted.T, values, lower=1, overwrite_a=1)
         return np.asarray(solved) if info == 0 else None
