@@ -23,6 +23,7 @@ from pinwarp.io.meshes import MeshFile
 from pinwarp.io.session_file import read_session, write_session
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
+from pinwarp.session.guide import with_template
 from pinwarp.session.naming import names_by_pattern
 from pinwarp.session.results import WarpInputs, WarpSolver, warped_mesh
 from pinwarp.session.session import Session, from_record, to_record
@@ -344,6 +345,36 @@ class EditingMachine(RuleBasedStateMachine):
     def place(self, side, position):
         session, _ = edits.place(self.editor.session, side, position)
         self.commit(session, "place")
+
+    @has_landmarks
+    @rule(data=st.data(), side=sides, position=coordinates)
+    def place_what_is_asked_for(self, data, side, position):
+        asked = self.some(data)
+        session, name = edits.place(self.editor.session, side, position, target=asked)
+        assert name == asked
+        self.commit(session, "place asked")
+
+    @rule(position=coordinates)
+    def add_passenger(self, position):
+        session, name = edits.add_passenger(self.editor.session, position)
+        assert session.landmark(name).state is LandmarkState.PASSENGER
+        self.commit(session, "passenger")
+
+    @rule(template=st.lists(names, max_size=4))
+    def load_template(self, template):
+        session = with_template(self.editor.session, template)
+        assert {x.name for x in session.landmarks} >= set(template)
+        self.commit(session, "template")
+
+    @rule()
+    def swap(self):
+        swapped = edits.swap_sides(self.editor.session)
+        assert edits.swap_sides(swapped) == self.editor.session
+        self.commit(swapped, "swap")
+
+    @rule(unit=st.sampled_from(edits.UNITS))
+    def measure_in(self, unit):
+        self.commit(edits.set_unit(self.editor.session, unit), "unit")
 
     @has_landmarks
     @rule(data=st.data(), side=sides, position=coordinates)
