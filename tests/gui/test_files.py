@@ -62,6 +62,18 @@ def test_a_mesh_dropped_on_a_viewport_opens_on_that_side(user):
     assert user.session.source is None
 
 
+def test_meshes_of_different_units_are_noticed(user, shared_data):
+    folder = shared_data / "msk-morph-pelvis"
+    user.window.documents.open_mesh(SOURCE, folder / "template_pelvis_r.stl")
+    user.settle()
+    assert user.dialogs.told == []
+    user.window.documents.open_mesh(DESTINATION, folder / "target_pelvis_r.stl")
+    user.settle()
+    title, text, _ = user.dialogs.told[0]
+    assert title == "Different units?"
+    assert "destination is 1,0" in text or "destination is 9" in text
+
+
 def test_two_meshes_dropped_together_fill_both_sides(user):
     folder = assets_folder()
     drop(user.window.viewports[SOURCE], folder / "femur_generic.ply", folder / "femur_subject.ply")

@@ -29,7 +29,10 @@ from pinwarp.io.template import read_template
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.guide import next_incomplete, with_template
-from pinwarp.session.session import from_record, to_record
+from pinwarp.session.session import Session, from_record, to_record
+
+# Two bones of one kind never differ so much in size.
+UNLIKELY_RATIO = 50.0
 
 
 @dataclass(frozen=True)
@@ -136,9 +139,29 @@ class Documents:
             session = edits.set_mesh(self._editor.committed, side, file)
             self._editor.commit(session, f"Open {side.value} mesh")
             self._tasks.said.emit(_mesh_summary(file))
+            self._compare_sizes(session)
 
         self._tasks.run(
             f"Reading {path.name}", lambda progress: self._read_mesh(path, progress), arrived
+        )
+
+    def _compare_sizes(self, session: Session) -> None:
+        """Say so when one mesh is so much larger that the two must be in different units."""
+        source, destination = (session.mesh(side) for side in Side)
+        if source is None or destination is None:
+            return
+        ratio = destination.diagonal / source.diagonal
+        if 1 / UNLIKELY_RATIO < ratio < UNLIKELY_RATIO:
+            return
+        larger = Side.DESTINATION if ratio > 1 else Side.SOURCE
+        times = max(ratio, 1 / ratio)
+        self._tasks.dialogs.tell(
+            "Different units?",
+            f"The {larger.value} is {times:,.0f} times as large as the {larger.other.value} "
+            f"({source.diagonal:.4g} and {destination.diagonal:.4g} across): one may be in metres "
+            "and the other in millimetres.\n\nThe warp takes care of it, and what is exported is "
+            f"in the destination's unit. Only the unit beside numbers ({session.unit}) cannot be "
+            "right for both.",
         )
 
     def ask_and_open_session(self) -> None:
