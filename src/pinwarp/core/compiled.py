@@ -10,13 +10,12 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-BLOCK = 512
+from pinwarp.core.kernel import BLOCK, LARGEST_FIELD
+
 # Sums in the precision of the points are added into double-precision totals after this many.
 RUN = 32
 # Landmarks whose distances are kept at hand while many fields are summed over them.
 FEW = 8
-# Fields are stored in 16 bits: the largest value of a block becomes this.
-LARGEST = 32767.0
 
 _compile = numba.njit(parallel=True, fastmath=True, cache=True, nogil=True, error_model="numpy")
 
@@ -148,8 +147,8 @@ def evaluate_fields(source, weights, affine, points, fields, scales):
             largest = np.float32(1e-30)
             for i in range(size):
                 largest = max(largest, abs(sums[q, i]))
-            scales[block, q] = largest / np.float32(LARGEST)
-            shrink = np.float32(LARGEST) / largest
+            scales[block, q] = largest / np.float32(LARGEST_FIELD)
+            shrink = np.float32(LARGEST_FIELD) / largest
             for i in range(size):
                 fields[q, first + i] = np.int16(np.rint(sums[q, i] * shrink))
 

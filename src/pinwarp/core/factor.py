@@ -20,6 +20,7 @@ from scipy.spatial.distance import cdist
 
 from pinwarp.core.errors import LandmarkError
 from pinwarp.core.findings import Finding, FindingKind
+from pinwarp.core.kernel import LARGEST_COORDINATE
 
 Matrix = NDArray[np.float64]
 
@@ -29,8 +30,6 @@ RANK_TOLERANCE = 1e-5
 PLANAR_TOLERANCE = 0.05
 # Landmarks closer than this share of the median spacing are reported.
 CLOSE_TOLERANCE = 1e-4
-# Squares of larger coordinates overflow.
-LARGEST_COORDINATE = 1e150
 
 
 def as_positions(values: ArrayLike, what: str) -> Matrix:

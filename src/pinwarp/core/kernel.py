@@ -27,7 +27,12 @@ Single = NDArray[np.float32]
 WORTH_COMPILING = 300_000
 # Distances held at once by the numpy path: 32 MB.
 CHUNK = 4_000_000
+# Squares of larger coordinates overflow.
 LARGEST_COORDINATE = 1e150
+# Points are taken in blocks that stay in the first-level cache.
+BLOCK = 512
+# Fields are stored in 16 bits: the largest value of a block becomes this.
+LARGEST_FIELD = 32767.0
 
 # Below this many sums (about a millisecond) a second thread costs more to wake than it saves.
 WORTH_THREADS = 4_000_000
@@ -246,9 +251,6 @@ class Fields:
     scales: Single
 
 
-BLOCK = 512
-
-
 def evaluate_fields(
     source: NDArray[Any],
     weights: NDArray[Any],
@@ -272,7 +274,7 @@ def evaluate_fields(
     for block in range(blocks):
         part = slice(block * BLOCK, (block + 1) * BLOCK)
         exact = _evaluate_with_numpy(source, weights, affine, points[part])
-        scales[block] = np.maximum(np.abs(exact).max(axis=0), 1e-30) / 32767
+        scales[block] = np.maximum(np.abs(exact).max(axis=0), 1e-30) / LARGEST_FIELD
         values[:, part] = np.rint(exact / scales[block]).T
     return Fields(values, scales)
 

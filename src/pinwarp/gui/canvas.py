@@ -245,7 +245,11 @@ class Canvas(FastView):
     def view_key(self) -> tuple[Any, ...]:
         """Return what decides which landmarks are hidden: camera, size and mesh."""
         share = self._section.share if self._section is not None else None
-        return (self.camera.GetMTime(), self.width(), self.height(), id(self.surface), share)
+        camera = self.camera
+        # Not its time stamp: the clipping range changes with every warp, and hides nothing.
+        pose = (camera.GetPosition(), camera.GetFocalPoint(), camera.GetViewUp())
+        lens = (camera.GetViewAngle(), camera.GetParallelScale(), camera.GetParallelProjection())
+        return (pose, lens, self.width(), self.height(), id(self.surface), share)
 
     @property
     def unit_per_pixel(self) -> float:

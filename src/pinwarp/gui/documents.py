@@ -16,7 +16,7 @@ from pinwarp.gui.file_tasks import (
     SESSION_FILES,
     FileTasks,
     Progress,
-    in_words,
+    words_of,
 )
 from pinwarp.gui.jobs import Cancelled
 from pinwarp.gui.recent_files import RecentFiles
@@ -177,7 +177,7 @@ class Documents:
         try:
             record = read_session(path)
         except (PinwarpError, OSError) as error:
-            self._tasks.dialogs.tell_error("Cannot open the session", in_words(error))
+            self._tasks.dialogs.tell_error("Cannot open the session", words_of(error))
             return
         places = {
             Side.SOURCE: self._locate(Side.SOURCE, record.source_mesh),

@@ -51,7 +51,7 @@ class FileTasks:
             if isinstance(error, Cancelled):
                 self.said.emit("Cancelled; nothing was changed")
             elif isinstance(error, (PinwarpError, OSError)):
-                self.dialogs.tell_error(f"{title} failed", in_words(error))
+                self.dialogs.tell_error(f"{title} failed", words_of(error))
             else:
                 raise error
 
@@ -64,7 +64,7 @@ class FileTasks:
         except (PinwarpError, OSError) as error:
             self.dialogs.tell_error(
                 f"Cannot write {path.name}",
-                f"{in_words(error)}\nNothing was lost: try another folder.",
+                f"{words_of(error)}\nNothing was lost: try another folder.",
             )
             return False
         return True
@@ -79,7 +79,7 @@ class FileTasks:
         return path.parent if path is not None else Path.home()
 
 
-def in_words(error: Exception) -> str:
+def words_of(error: Exception) -> str:
     """Return what the user should read about an error."""
     if isinstance(error, OSError) and error.strerror:
         return f"{error.filename or 'The file'}: {error.strerror}."

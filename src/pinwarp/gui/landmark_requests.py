@@ -15,12 +15,14 @@ from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.ghost import Ghost
 from pinwarp.session.guide import next_incomplete
+from pinwarp.session.naming import in_words
 from pinwarp.session.session import Session
 
 # An arrow key moves by this share of the bone, unless a step was set.
 NUDGE_SHARE = 1 / 500
 # Nearer to the surface than this share of the bone, a landmark counts as on it.
 ON_SURFACE = 1e-4
+ALL_LOCKED = "All landmarks are locked: L unlocks them."
 
 
 class LandmarkRequests:
@@ -165,9 +167,10 @@ class LandmarkRequests:
     def distance_off(self, landmark: Landmark, side: Side) -> float | None:
         """Return how far off the surface a landmark is; None where it lies on it."""
         surface, position = self._viewports[side].surface, landmark.position(side)
-        if surface is None or position is None or is_on(surface, np.array(position)):
+        if surface is None or position is None:
             return None
-        return surface.closest(position)[1]
+        _, off = surface.closest(position)
+        return off if off > surface.diagonal * ON_SURFACE else None
 
     def _move_selected(
         self, side: Side, move: Callable[[NDArray], NDArray], verb: str, *, merge: bool = False
@@ -182,13 +185,13 @@ class LandmarkRequests:
             if landmark is None or position is None or self._is_locked(landmark):
                 continue
             session = edits.move(session, name, side, as_position(move(np.array(position))))
-        words = self._selected_words()
-        editor.commit(session, f"{verb} {words}", f"{verb} {names} {side}" if merge else None)
+        key = f"{verb} {names} {side}" if merge else None
+        editor.commit(session, f"{verb} {in_words(names)}", key)
 
     def _is_locked(self, landmark: Landmark | None = None) -> bool:
         """Say whether landmarks (or one of them) are frozen, telling the user so."""
         if self._editor.view.locked:
-            self.refused.emit("All landmarks are locked: L unlocks them.")
+            self.refused.emit(ALL_LOCKED)
             return True
         if landmark is not None and landmark.locked:
             self.refused.emit(f"{landmark.name} is locked: unlock it in the table.")
@@ -210,7 +213,7 @@ class LandmarkRequests:
             # A half-placed landmark has only one position that can be meant.
             there = landmark.position(side) is not None
             session = edits.remove_side(session, name, side if there else side.other)
-        editor.commit(session, f"Delete position of {self._selected_words()}")
+        editor.commit(session, f"Delete position of {in_words(editor.selection.names)}")
 
     def delete_landmarks(self) -> None:
         """Delete the selected landmarks on both sides."""
@@ -223,12 +226,7 @@ class LandmarkRequests:
             for name in editor.selection.names
             if (landmark := session.landmark(name)) and not self._is_locked(landmark)
         ]
-        words = free[0] if len(free) == 1 else f"{len(free)} landmarks"
-        editor.commit(edits.remove(session, free), f"Delete {words}")
-
-    def _selected_words(self) -> str:
-        names = self._editor.selection.names
-        return names[0] if len(names) == 1 else f"{len(names)} landmarks"
+        editor.commit(edits.remove(session, free), f"Delete {in_words(free)}")
 
 
 def is_on(surface: Surface, position: NDArray) -> bool:

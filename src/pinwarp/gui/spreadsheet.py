@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from qtpy.QtGui import QGuiApplication
@@ -19,6 +19,7 @@ from pinwarp.io.clipboard_table import (
 )
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
+from pinwarp.session.naming import in_words
 
 
 class Spreadsheet:
@@ -88,15 +89,3 @@ def _without_moves(locked: Mapping[str, Landmark], table: ClipboardTable) -> Cli
         else:
             rows.append(row)
     return ClipboardTable(tuple(rows), tuple(sorted(skipped, key=lambda line: line.line)))
-
-
-def in_words(names: Iterable[str]) -> str:
-    """Return the one name, or how many there are.
-
-    Examples
-    --------
-    >>> in_words(["fovea"]), in_words(["fovea", "head"])
-    ('fovea', '2 landmarks')
-    """
-    names = list(names)
-    return names[0] if len(names) == 1 else f"{len(names)} landmarks"

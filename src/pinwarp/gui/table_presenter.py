@@ -8,18 +8,20 @@ from qtpy.QtGui import QAction
 from qtpy.QtWidgets import QInputDialog
 
 from pinwarp.core.errors import PinwarpError
-from pinwarp.core.landmarks import Landmark, LandmarkState, Role
+from pinwarp.core.landmarks import Landmark, Role
 from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.landmark_columns import COLUMNS
 from pinwarp.gui.landmark_model import LandmarkModel
 from pinwarp.gui.landmark_panel import LandmarkPanel
+from pinwarp.gui.landmark_requests import ALL_LOCKED
 from pinwarp.gui.rename_dialog import RenameDialog
-from pinwarp.gui.spreadsheet import Spreadsheet, in_words
+from pinwarp.gui.spreadsheet import Spreadsheet
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
+from pinwarp.session.guide import next_incomplete
+from pinwarp.session.naming import in_words
 from pinwarp.session.session import Session
 
-_INCOMPLETE = (LandmarkState.SOURCE_ONLY, LandmarkState.DESTINATION_ONLY, LandmarkState.EMPTY)
 _NEED_SELECTION = (
     *("rename", "rename_many", "note", "copy", "move_up", "move_down"),
     *("toggle_enabled", "toggle_locked", "toggle_role"),
@@ -160,7 +162,7 @@ class TablePresenter:
     def _on_edit(self, column: int, name: str, text: str) -> None:
         edit, label = COLUMNS[column].edit, COLUMNS[column].label
         if COLUMNS[column].side is not None and self._editor.view.locked:
-            self._say("All landmarks are locked: L unlocks them.")
+            self._say(ALL_LOCKED)
         elif edit is not None:
             self._commit_renamed(lambda session: edit(session, name, text), label.format(name))
 
@@ -241,16 +243,20 @@ class TablePresenter:
 
     def next_incomplete(self) -> None:
         """Select the next landmark that lacks a position, going round from the selected one."""
-        session, names = self._editor.committed, self._editor.selection.names
-        start = max((session.index_of(name) or 0 for name in names), default=-1) + 1
-        marks = session.landmarks
-        for landmark in (*marks[start:], *marks[:start]):
-            if landmark.state in _INCOMPLETE:
-                self._panel.reveal([landmark.name])
-                self._editor.select(landmark.name)
-                self._say(f"{landmark.name}: {landmark.state.value}.")
-                return
-        self._say("All landmarks are complete." if marks else "There are no landmarks yet.")
+        session, chosen = self._editor.committed, set(self._editor.selection.names)
+        last = [mark.name for mark in session.landmarks if mark.name in chosen][-1:]
+        name = next_incomplete(session, last[0] if last else None)
+        landmark = session.landmark(name) if name is not None else None
+        if landmark is None:
+            self._say(
+                "All landmarks are complete."
+                if session.landmarks
+                else "There are no landmarks yet."
+            )
+            return
+        self._panel.reveal([landmark.name])
+        self._editor.select(landmark.name)
+        self._say(f"{landmark.name}: {landmark.state.value}.")
 
 
 def _all_disabled(landmarks: Iterable[Landmark]) -> bool:

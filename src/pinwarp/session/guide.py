@@ -68,13 +68,14 @@ def next_incomplete(session: Session, after: str | None, *, backwards: bool = Fa
     >>> next_incomplete(session, "a"), next_incomplete(session, "c")
     ('c', 'a')
     """
-    landmarks = list(asked_for(session))
+    landmarks = list(session.landmarks)
     if backwards:
         landmarks.reverse()
     names = [landmark.name for landmark in landmarks]
     begin = names.index(after) + 1 if after in names else 0
+    asked = {landmark.name for landmark in asked_for(session)}
     for landmark in landmarks[begin:] + landmarks[:begin]:
-        if not landmark.is_complete:
+        if landmark.name in asked and not landmark.is_complete:
             return landmark.name
     return None
 

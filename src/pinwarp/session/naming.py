@@ -1,9 +1,9 @@
-"""New names for many landmarks at once: by a pattern, or by finding and replacing."""
+"""New names for many landmarks at once, and how several of them are spoken of."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
 
 from pinwarp.core.errors import LandmarkError
@@ -68,3 +68,15 @@ def names_by_replacing(names: Sequence[str], find: str, replacement: str) -> dic
     if not find:
         return {name: name for name in names}
     return {name: name.replace(find, replacement).strip() for name in names}
+
+
+def in_words(names: Iterable[str]) -> str:
+    """Return the one name, or how many there are.
+
+    Examples
+    --------
+    >>> in_words(["fovea"]), in_words(["fovea", "head"])
+    ('fovea', '2 landmarks')
+    """
+    names = list(names)
+    return names[0] if len(names) == 1 else f"{len(names)} landmarks"
