@@ -113,7 +113,7 @@ def _write(writer: Any, path: Path, mesh: Mesh) -> None:
         complaints.append(text)
 
     # With an observer VTK says it to us and not to the terminal.
-    complain.CallDataType = "string"  # type: ignore[attr-defined]
+    complain.CallDataType = "string"  # type: ignore[attr-defined]  # how VTK is asked for the text
     writer.AddObserver("ErrorEvent", complain)
     sizes = np.arange(0, mesh.faces.size + 1, 3)
     writer.SetInputData(_polydata(mesh.vertices, mesh.faces.ravel(), sizes))
