@@ -204,7 +204,10 @@ def test_the_warped_mesh_is_exported_as_it_is_shown(user, tmp_path):
     exported = read_mesh(path).mesh
     shown = user.window.viewports[DESTINATION].overlay_points
     assert np.allclose(exported.vertices, shown, atol=1e-3)
-    assert "Exported warped.ply (16 pairs, penalty 0)" in user.window.statusBar().currentMessage()
+    assert (
+        "Exported warped.ply: the full warp (16 pairs, penalty 0)"
+        in user.window.statusBar().currentMessage()
+    )
 
 
 @pytest.mark.parametrize("which", ["source", "destination", "pairs"])

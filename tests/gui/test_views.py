@@ -9,7 +9,7 @@ from qtpy.QtGui import QColor, QImage, QPainter, QWheelEvent
 from qtpy.QtWidgets import QApplication
 
 from pinwarp.core.alignment import Similarity, fit_similarity
-from pinwarp.core.landmarks import Landmark, LandmarkState, Side, as_position, positions
+from pinwarp.core.landmarks import Landmark, Side, as_position, positions
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui.camera_pose import Pose, inverse
 from pinwarp.gui.menus import shortcut_groups
@@ -422,60 +422,6 @@ def test_a_section_clips_towards_the_eye_and_sight_begins_at_the_cut():
     assert np.allclose(section.entry(eye, far), [0, 0, 7])
     assert section.entry(eye, np.array([0, 0, 9.0])) is None
     assert np.allclose(section.entry(far, eye), far)
-
-
-# Aligned instead of warped
-
-
-@pytest.mark.parametrize("key", ["show_rigid", "show_similarity"])
-def test_the_source_is_shown_aligned_and_the_status_bar_says_that_export_saves_the_warp(
-    turned, key
-):
-    pair(turned, 6)
-    there = turned.window.viewports[DESTINATION]
-    warped = there.overlay_points
-    before = turned.session
-    turned.trigger(key)
-    scaling = key == "show_similarity"
-    sides = [positions(turned.session.pairs, side) for side in Side]
-    fit = fit_similarity(*sides, scaling=scaling)
-    vertices = turned.session.mesh(SOURCE).vertices
-    size = turned.session.mesh(SOURCE).diagonal * fit.scale
-    assert np.allclose(there.overlay_points, fit.apply(vertices), atol=1e-6 * size)
-    note = turned.window.view_controls.note
-    assert note.isVisible()
-    assert "export saves the warp" in note.text()
-    assert turned.session is before, "looking changes no data"
-    turned.trigger("show_warp")
-    assert np.allclose(there.overlay_points, warped)
-    assert note.text() == ""
-
-
-def test_the_aligned_source_follows_a_drag_and_carries_its_passengers(user):
-    user.open_sample()
-    user.trigger("show_rigid")
-    there = user.window.viewports[DESTINATION]
-    before = there.overlay_points
-
-    def passengers():
-        return np.array([m.position for m in there.layer.markers if not m.movable])
-
-    inputs = [positions(user.session.pairs, side) for side in Side]
-    sources = [x.source for x in user.session.landmarks if x.state is LandmarkState.PASSENGER]
-    fit = fit_similarity(*inputs, scaling=False)
-    assert np.allclose(passengers(), fit.apply(sources))
-    marker = next(
-        m
-        for m, hidden in zip(there.layer.markers, there.layer.hidden(), strict=True)
-        if not hidden and m.movable
-    )
-    start = user.place_of(DESTINATION, marker.position)
-    user.drag(there, start, start + QPoint(0, 25))
-    assert not np.allclose(there.overlay_points, before)
-    fit = fit_similarity(*[positions(user.session.pairs, s) for s in Side], scaling=False)
-    assert np.allclose(
-        there.overlay_points, fit.apply(user.session.mesh(SOURCE).vertices), atol=1e-3
-    )
 
 
 def test_escape_during_a_drag_brings_the_overlay_back(user):

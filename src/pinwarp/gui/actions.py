@@ -99,9 +99,13 @@ SPECS = (
     ActionSpec("link_linked", "&Linked", "", "", "Both move, seen from the same side", True),
     ActionSpec("link_rotation", "&Rotation Only", "", "", "Pan and zoom are of their own", True),
     ActionSpec("link_free", "&Free", "", "", "Each view moves by itself", True),
-    ActionSpec("show_warp", "&Warped", "", "", "The source as the warp bends it", True),
-    ActionSpec("show_rigid", "Aligned &Rigidly", "", "", "Turned and moved only", True),
-    ActionSpec("show_similarity", "Aligned with &Scaling", "", "", "Turned, moved, sized", True),
+    ActionSpec("apply_full", "&Full Warp", "", "", "All of it", True),
+    ActionSpec(
+        "apply_without_pose", "Without &Pose", "", "", "Export keeps the source's frame", True
+    ),
+    ActionSpec("apply_affine", "&Affine Fit Only", "", "", "Turned, moved, sized, sheared", True),
+    ActionSpec("apply_similarity", "&Similarity Fit Only", "", "", "Turned, moved, sized", True),
+    ActionSpec("apply_rigid", "&Rigid Fit Only", "", "", "Turned and moved", True),
     ActionSpec("markers_larger", "La&rger Landmarks", "]"),
     ActionSpec("markers_smaller", "S&maller Landmarks", "["),
     ActionSpec("wireframe", "W&ireframe Bones", "Shift+W", "", "Draw edges only", True),

@@ -9,7 +9,7 @@ from pinwarp.gui.file_tasks import LANDMARK_FILES, MESH_FILES, FileTasks, Progre
 from pinwarp.io.landmark_formats.opensim_creator import write_pairs, write_side
 from pinwarp.io.meshes import write_mesh
 from pinwarp.session.editor import Editor
-from pinwarp.session.results import warped_mesh, warped_passengers
+from pinwarp.session.exports import applied_in_words, warped_mesh, warped_passengers
 
 
 class Exports:
@@ -82,6 +82,7 @@ class Exports:
         def arrived(_nothing: None) -> None:
             pairs = len(session.pairs)
             penalty = f"penalty {session.warping_penalty:.6g}"
-            self._tasks.said.emit(f"Exported {path.name} ({pairs} pairs, {penalty})")
+            what = applied_in_words(session)
+            self._tasks.said.emit(f"Exported {path.name}: {what} ({pairs} pairs, {penalty})")
 
         self._tasks.run(f"Exporting {path.name}", write, arrived)

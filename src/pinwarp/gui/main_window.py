@@ -37,11 +37,13 @@ from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
 from pinwarp.gui.menus import fill_toolbar, make_menus, shortcut_groups
 from pinwarp.gui.penalty_panel import PenaltyPanel
 from pinwarp.gui.presenter import Presenter
+from pinwarp.gui.quality_presenter import QualityPresenter
 from pinwarp.gui.recent_files import RecentFiles
 from pinwarp.gui.shortcut_overlay import ShortcutOverlay
 from pinwarp.gui.table_presenter import TablePresenter
 from pinwarp.gui.view_controls import ViewControls
 from pinwarp.gui.viewport import Viewport
+from pinwarp.gui.warp_presenter import WarpPresenter
 from pinwarp.io.samples import sample_session
 from pinwarp.session.editor import Editor
 
@@ -72,9 +74,12 @@ class MainWindow(QMainWindow):
         self._recent = RecentFiles(settings)
         self._lay_out()
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
+        self.quality = QualityPresenter(self.presenter)
         self._bone_edits = BoneEdits(self.editor, self.actions_by_key, self)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
-        self.view_controls.add_to(self.findChild(QToolBar, "tools"), self.statusBar())
+        self.view_controls.add_to(self.findChild(QToolBar, "tools"))
+        self.warp_presenter = WarpPresenter(self.editor, self.actions_by_key, self)
+        self.statusBar().addPermanentWidget(self.warp_presenter.note)
         self._tasks = FileTasks(self.editor, self.jobs, self._dialogs)
         self.documents = Documents(
             self.editor, self._tasks, self._recent, self.presenter.keep_surface
@@ -314,7 +319,7 @@ class MainWindow(QMainWindow):
     @property
     def is_settled(self) -> bool:
         """Whether everything asked for is done and shown."""
-        return self.jobs.is_idle and self.presenter.is_settled
+        return self.jobs.is_idle and self.presenter.is_settled and self.quality.is_settled
 
     # The end
 
@@ -332,10 +337,12 @@ class MainWindow(QMainWindow):
         self._settings.setValue("geometry", self.saveGeometry())
         self._settings.setValue("layout", self.saveState())
         self.jobs.shut_down()
+        self.quality.shut_down()
         self.presenter.shut_down()
         self.table_presenter.shut_down()
         self._bone_edits.shut_down()
         self.view_controls.shut_down()
+        self.warp_presenter.shut_down()
         for signal in (self.editor.session_changed, self.editor.selection_changed):
             signal.disconnect(self._on_session)
         self.editor.view_changed.disconnect(self._on_view)

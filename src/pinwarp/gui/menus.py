@@ -22,8 +22,9 @@ MENUS = {
     "&Place": (
         "accept_ghost next_incomplete - load_template guide set_pattern - snap set_nudge lock"
     ),
+    "&Warp": "@components",
     "&View": (
-        "overlay @shown - fit focus @sides @cameras - section wireframe - "
+        "overlay - fit focus @sides @cameras - section wireframe - "
         "markers_larger markers_smaller - show_coordinates -"
     ),
     "&Help": "shortcuts - about_penalty about",
@@ -32,7 +33,10 @@ SUBMENUS = {
     "@recent": ("Open &Recent", ""),
     "@import": ("&Import", "import_source import_destination import_pairs"),
     "@mirror": ("&Mirror Source", "mirror_x mirror_y mirror_z"),
-    "@shown": ("&Show Source", "show_warp show_rigid show_similarity"),
+    "@components": (
+        "&Apply",
+        "apply_full apply_without_pose - apply_affine apply_similarity apply_rigid",
+    ),
     "@sides": (
         "&Look From",
         "view_front view_back - view_left view_right - view_top view_bottom",

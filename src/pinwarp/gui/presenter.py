@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from psygnal import Signal
 
 from pinwarp.core.landmarks import Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import PenaltyConvention
-from pinwarp.gui.aligned import as_shown
 from pinwarp.gui.drawn_mesh import OverlayWarp
 from pinwarp.gui.jobs import LatestWins
 from pinwarp.gui.landmark_requests import LandmarkRequests
@@ -24,7 +24,7 @@ from pinwarp.gui.scene import scene_of
 from pinwarp.gui.surface import Surface, shading_normals, triangles
 from pinwarp.gui.viewport import Viewport
 from pinwarp.session import edits
-from pinwarp.session.editor import Editor, OverlayKind
+from pinwarp.session.editor import Editor
 from pinwarp.session.ghost import Ghost, ghost_of
 from pinwarp.session.results import WarpInputs, WarpResult, WarpSolver
 from pinwarp.session.session import Session
@@ -46,7 +46,6 @@ class _Request:
     inputs: WarpInputs
     kind: _Kind
     result: WarpResult | None = None
-    overlay: OverlayKind = OverlayKind.WARP
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +60,8 @@ class _Shaded:
 class Presenter:
     """Everything between the editor and the widgets; both are passed in.
 
+    ``result_changed`` emits each new warp, and whether it is at rest (no drag is under way).
+
     Parameters
     ----------
     editor
@@ -70,6 +71,8 @@ class Presenter:
     model, table, panel
         The other views.
     """
+
+    result_changed = Signal(WarpResult, bool)
 
     def __init__(
         self,
@@ -87,7 +90,7 @@ class Presenter:
         self._surfaces: weakref.WeakKeyDictionary[Mesh, Surface] = weakref.WeakKeyDictionary()
         self.solver = WarpSolver()
         self._warps = LatestWins(self._warp)
-        self._asked: tuple[WarpInputs, bool, OverlayKind] | None = None
+        self._asked: tuple[WarpInputs, bool] | None = None
         self.result: WarpResult | None = None
         self._table_shown_at = 0.0
         self._shown: weakref.WeakKeyDictionary[Mesh, OverlayWarp] = weakref.WeakKeyDictionary()
@@ -130,9 +133,7 @@ class Presenter:
         """Whether what is shown follows from the session as it is."""
         if not self._warps.is_idle or self._asked is None:
             return False
-        asked, previewed, overlay = self._asked
-        if overlay is not self._editor.view.overlay_kind:
-            return False
+        asked, previewed = self._asked
         current = WarpInputs.of(self._editor.session, asked.stand_in)
         return asked == current and previewed == self._editor.is_previewing
 
@@ -166,12 +167,11 @@ class Presenter:
         if editor.is_previewing:
             destination.set_warping(True)
         inputs, previewing = self._inputs(), editor.is_previewing
-        overlay = editor.view.overlay_kind
-        if (inputs, previewing, overlay) == self._asked:
+        if (inputs, previewing) == self._asked:
             return
-        self._asked = (inputs, previewing, overlay)
+        self._asked = (inputs, previewing)
         kind = _Kind.PREVIEW if previewing else _Kind.REST
-        self._warps.request(_Request(inputs, kind, overlay=overlay))
+        self._warps.request(_Request(inputs, kind))
 
     def _inputs(self) -> WarpInputs:
         """Return what the warp depends on, with a stand-in where drawing in full is slow."""
@@ -196,8 +196,6 @@ class Presenter:
                     self.ghosts[side],
                 )
             )
-        if self._asked is not None and self._asked[2] is not editor.view.overlay_kind:
-            self._ask()
 
     def _ghost(self, side: Side) -> Ghost | None:
         """Predict where the next landmark of a side should be, on that side's surface."""
@@ -223,14 +221,13 @@ class Presenter:
             return _Shaded(self.solver.refine(request.result), request.kind)
         inputs = request.inputs
         solve = self.solver.preview if request.kind is _Kind.PREVIEW else self.solver.solve
-        warped = request.overlay is OverlayKind.WARP
-        result = as_shown(solve(inputs), request.overlay)
+        result = solve(inputs)
         return _Shaded(
             result,
             request.kind,
             (
-                self._shade(result, inputs.mesh, result.vertices, warped),
-                self._shade(result, inputs.stand_in, result.stand_in, warped),
+                self._shade(result, inputs.mesh, result.vertices),
+                self._shade(result, inputs.stand_in, result.stand_in),
             ),
         )
 
@@ -239,7 +236,6 @@ class Presenter:
         result: WarpResult,
         mesh: Mesh | None,
         vertices: NDArray[np.float32] | None,
-        warped: bool,
     ) -> OverlayWarp | None:
         if mesh is None or vertices is None:
             return None
@@ -249,7 +245,7 @@ class Presenter:
         normals = shading_normals(triangles(vertices, mesh.faces))
         # The warped surface shows its inside when it did so before, or when the warp mirrors it.
         whole = self._surface(result.inputs.mesh)
-        affine = result.spline.affine[1:] if warped and result.spline is not None else np.eye(3)
+        affine = result.shown.affine[1:] if result.shown is not None else np.eye(3)
         mirrored = bool(np.linalg.det(affine) < 0)
         inside_out = (whole is not None and whole.inside_out) != mirrored
         self._shown[mesh] = OverlayWarp(mesh, vertices, normals, inside_out)
@@ -276,6 +272,7 @@ class Presenter:
             self._model.show_result(result)
         self._panel.show_result(result)
         self._on_looks()
+        self.result_changed.emit(result, shaded.kind is not _Kind.PREVIEW)
         if shaded.kind is _Kind.REST and result.factor is not None and not result.factor.has_modes:
             self._warps.request_if_idle(_Request(result.inputs, _Kind.REFINE, result))
 

@@ -7,12 +7,11 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from qtpy.QtCore import QObject, Qt
 from qtpy.QtGui import QAction, QActionGroup
-from qtpy.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QSlider, QStatusBar, QToolBar, QWidget
+from qtpy.QtWidgets import QHBoxLayout, QSizePolicy, QSlider, QToolBar, QWidget
 
 from pinwarp.core.alignment import Similarity
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.gui.actions import icon
-from pinwarp.gui.aligned import misfit
 from pinwarp.gui.camera_link import CameraLink
 from pinwarp.gui.camera_pose import (
     Matrix,
@@ -24,19 +23,13 @@ from pinwarp.gui.camera_pose import (
     standard_frame,
 )
 from pinwarp.gui.canvas import Canvas
-from pinwarp.session.editor import Editor, LinkMode, OverlayKind
-from pinwarp.session.results import WarpInputs
+from pinwarp.session.editor import Editor, LinkMode
 from pinwarp.session.session import Session
 
 LINK_ACTIONS = {
     LinkMode.LINKED: "link_linked",
     LinkMode.ROTATION: "link_rotation",
     LinkMode.FREE: "link_free",
-}
-OVERLAY_ACTIONS = {
-    OverlayKind.WARP: "show_warp",
-    OverlayKind.RIGID: "show_rigid",
-    OverlayKind.SIMILARITY: "show_similarity",
 }
 # Smallest and largest landmark, in logical pixels.
 MARKER_RADII = (4.0, 12.0)
@@ -73,7 +66,6 @@ class ViewControls(QObject):
         self._fitted_for: tuple[Landmark, ...] | None = None
         self._fit: Similarity | None = None
         self.section_slider = _section_slider()
-        self.note = QLabel()
         self._surfaces = self._surfaces_now()
         self._pairs = 0
         self.link = CameraLink(views, self.pairing_fit)
@@ -82,13 +74,10 @@ class ViewControls(QObject):
 
     def _connect(self) -> None:
         actions, editor = self._actions, self._editor
-        links, overlays = QActionGroup(self), QActionGroup(self)
+        links = QActionGroup(self)
         for mode, key in LINK_ACTIONS.items():
             links.addAction(actions[key])
             self._on_trigger(key, lambda mode=mode: editor.look(link=mode))
-        for kind, key in OVERLAY_ACTIONS.items():
-            overlays.addAction(actions[key])
-            self._on_trigger(key, lambda kind=kind: editor.look(overlay_kind=kind, overlay=True))
         self._on_trigger("link_next", self._next_link)
         self._on_trigger("fit", self.fit_all)
         self._on_trigger("focus", self.focus)
@@ -106,9 +95,8 @@ class ViewControls(QObject):
         # Qt's "checked" argument is of no use to any of them.
         self._actions[key].triggered.connect(lambda _checked=False: call())
 
-    def add_to(self, bar: QToolBar, status: QStatusBar) -> None:
-        """Put the cross-section and its depth into a toolbar, and the note into a status bar."""
-        status.addPermanentWidget(self.note)
+    def add_to(self, bar: QToolBar) -> None:
+        """Put the cross-section and its depth into a toolbar."""
         bar.addAction(self._actions["section"])
         holder = QWidget()
         row = QHBoxLayout(holder)
@@ -132,8 +120,6 @@ class ViewControls(QObject):
         actions["link_next"].setIcon(icon(LINK_ACTIONS[view.link]))
         actions["markers_larger"].setEnabled(view.marker_radius < MARKER_RADII[1])
         actions["markers_smaller"].setEnabled(view.marker_radius > MARKER_RADII[0])
-        actions[OVERLAY_ACTIONS[view.overlay_kind]].setChecked(True)
-        self._write_note()
         actions["wireframe"].setChecked(view.wireframe)
         actions["section"].setChecked(view.section is not None)
         self.section_slider.setEnabled(view.section is not None)
@@ -149,19 +135,6 @@ class ViewControls(QObject):
         self._surfaces, self._pairs = surfaces, pairs
         if unaligned and self.pairing_fit() is not None:
             self.fit_all()
-        self._write_note()
-
-    def _write_note(self) -> None:
-        """Say when what is shown is not what would be exported."""
-        view, session = self._editor.view, self._editor.session
-        left = None
-        if view.overlay and view.overlay_kind is not OverlayKind.WARP:
-            left = misfit(WarpInputs.of(session), view.overlay_kind)
-        if left is None:
-            self.note.clear()
-            return
-        words = f"RMS {left:.3g} {session.unit}"
-        self.note.setText(f"Shown by the {view.overlay_kind} ({words}); export saves the warp")
 
     def _surfaces_now(self) -> list[object]:
         return [view.surface for view in self._views.values()]

@@ -36,6 +36,10 @@ class SessionRecord:
         The unit of length, for display.
     planar
         Whether nearly planar landmarks are treated as planar.
+    components
+        What of the warp is applied: a value of :class:`~pinwarp.core.components.Components`.
+    blend
+        How far from the aligned source to these components, from 0 to 1.
     unknown
         Header lines this version does not know, as (key, text); a line without a key has
         an empty one.
@@ -48,6 +52,8 @@ class SessionRecord:
     penalty_convention: str = "regularising"
     unit: str = "mm"
     planar: bool = False
+    components: str = "full"
+    blend: float = 1.0
     unknown: tuple[tuple[str, str], ...] = ()
 
 
@@ -105,6 +111,11 @@ def write_session(path: str | Path, record: SessionRecord) -> None:
     ]
     if record.planar:
         header.append(("treat_as_planar", "yes"))
+    # Only what is not as usual: most files need no word about it.
+    if record.components != SessionRecord.components:
+        header.append(("components", record.components))
+    if record.blend != SessionRecord.blend:
+        header.append(("blend", repr(float(record.blend))))
     # Every header entry stays on its line, whatever it says.
     lines = [" ".join(f"# {key}: {text}".splitlines()).rstrip() + "\n" for key, text in header]
     lines += [f"# {key}: {text}\n" if key else f"# {text}\n" for key, text in record.unknown]

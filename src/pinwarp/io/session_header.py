@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from pinwarp.core.components import Components
 from pinwarp.core.errors import FileFormatError, NewerFileError
 from pinwarp.core.mirror import AXES
 from pinwarp.io.csv_cells import YES_NO, as_sentence, number_of, shortened
@@ -28,9 +29,12 @@ _FIELDS = {
     "penalty_convention": "penalty_convention",
     "unit": "unit",
     "treat_as_planar": "planar",
+    "components": "components",
+    "blend": "blend",
 }
 """The field of a session record, or of one of its meshes, that each known key fills."""
 _CONVENTIONS = ("regularising", "opynsim")
+_COMPONENTS = tuple(part.value for part in Components)
 
 
 class HeaderLine(NamedTuple):
@@ -199,6 +203,12 @@ def _value(key: str, text: str, folder: Path) -> MeshReference | float | bool | 
             raise ValueError(
                 f"the convention {shortened(text)} is none of {', '.join(_CONVENTIONS)}"
             )
+        case "components" if text not in _COMPONENTS:
+            raise ValueError(
+                f"the components {shortened(text)} are none of {', '.join(_COMPONENTS)}"
+            )
+        case "blend":
+            return _blend(text)
         case _:
             return text
 
@@ -208,6 +218,13 @@ def _axes(key: str, text: str) -> str:
     if not text or len(axes) != len(text):
         raise ValueError(f"{key} is {shortened(text)} and names no axes such as x or xy")
     return axes
+
+
+def _blend(text: str) -> float:
+    value = number_of(text, ",")
+    if not 0 <= value <= 1:
+        raise ValueError(f"the blend {text} is not from 0 to 1")
+    return value
 
 
 def _penalty(text: str) -> float:

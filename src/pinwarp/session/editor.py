@@ -30,14 +30,6 @@ class LinkMode(StrEnum):
     FREE = "free"
 
 
-class OverlayKind(StrEnum):
-    """What moves the source over the destination; what is exported is always the warp."""
-
-    WARP = "warp"
-    RIGID = "rigid fit"
-    SIMILARITY = "similarity fit"
-
-
 @dataclass(frozen=True)
 class ViewState:
     """How the session is looked at and worked on: not undone, not part of what is saved.
@@ -67,7 +59,6 @@ class ViewState:
     """
 
     overlay: bool = True
-    overlay_kind: OverlayKind = OverlayKind.WARP
     opacity: float = 0.55
     hovered: str | None = None
     locked: bool = False

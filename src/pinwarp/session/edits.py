@@ -6,7 +6,8 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 
-from pinwarp.core.errors import LandmarkError
+from pinwarp.core.components import Components
+from pinwarp.core.errors import LandmarkError, PinwarpError
 from pinwarp.core.landmarks import Landmark, Position, Role, Side
 from pinwarp.core.mirror import mirrored_mesh, mirrored_points, toggled
 from pinwarp.core.spline import PenaltyConvention, check_penalty
@@ -211,6 +212,24 @@ def set_convention(session: Session, convention: PenaltyConvention) -> Session:
 def set_planar(session: Session, planar: bool) -> Session:
     """Treat nearly planar landmarks as planar, or not."""
     return replace(session, planar=planar)
+
+
+def set_components(session: Session, components: Components) -> Session:
+    """Choose what of the warp is applied, on the screen and in exports."""
+    return replace(session, components=components)
+
+
+def set_blend(session: Session, blend: float) -> Session:
+    """Apply the components in part: 0 is the aligned source, 1 all of them.
+
+    Raises
+    ------
+    PinwarpError
+        When the blend is not from 0 to 1.
+    """
+    if not 0 <= blend <= 1:
+        raise PinwarpError(f"The blend is {blend:.6g}; it must be from 0 to 1.")
+    return replace(session, blend=float(blend))
 
 
 def set_unit(session: Session, unit: str) -> Session:

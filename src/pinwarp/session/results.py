@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pinwarp.core.components import Components, applied, as_drawn
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.factor import SourceFactor, factorise
-from pinwarp.core.landmarks import Landmark, Position, Role, Side, positions
+from pinwarp.core.landmarks import Position, Role, Side
 from pinwarp.core.live import Influence, PenaltySweep, PreviewPoints, can_follow, preview
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import PenaltyConvention, Spline, solve
@@ -34,6 +35,8 @@ class WarpInputs:
     mesh: Mesh | None
     stand_in: Mesh | None
     passengers: tuple[Position, ...]
+    components: Components = Components.FULL
+    blend: float = 1.0
 
     @classmethod
     def of(cls, session: Session, stand_in: Mesh | None = None) -> WarpInputs:
@@ -60,7 +63,14 @@ class WarpInputs:
                 for landmark in session.landmarks
                 if landmark.role is Role.PASSENGER and landmark.source is not None
             ),
+            components=as_drawn(session.components),
+            blend=session.blend,
         )
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the warp is applied as it is solved."""
+        return self.components is Components.FULL and self.blend == 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +83,8 @@ class WarpResult:
         What it was computed from.
     factor, spline
         None when there are no pairs or the solve failed.
+    shown
+        What is applied of the spline: all that follows here is its doing.
     residuals : (n,) float64
         Distance of each warped source landmark from its destination, in mesh units.
     vertices : (m, 3) float32 or None
@@ -88,6 +100,7 @@ class WarpResult:
     inputs: WarpInputs
     factor: SourceFactor | None = None
     spline: Spline | None = None
+    shown: Spline | None = None
     residuals: Matrix | None = None
     vertices: NDArray[np.float32] | None = None
     stand_in: NDArray[np.float32] | None = None
@@ -138,17 +151,17 @@ class WarpSolver:
         # A new state of rest: the shortcuts from the old one are of no more use.
         self._influence = None
         result = self._solve_landmarks(inputs)
-        if result.factor is not None and result.spline is not None:
+        if result.factor is not None and result.shown is not None:
             if len(inputs.source) <= EAGER_MODES:
                 _ = result.factor.modes
-            kept = last if last is not None and last.spline is result.spline else WarpResult(inputs)
+            kept = last if last is not None and last.shown is result.shown else WarpResult(inputs)
             result = replace(
                 result,
                 vertices=self._unless_kept(
-                    result.spline, inputs.mesh, kept.inputs.mesh, kept.vertices
+                    result.shown, inputs.mesh, kept.inputs.mesh, kept.vertices
                 ),
                 stand_in=self._unless_kept(
-                    result.spline, inputs.stand_in, kept.inputs.stand_in, kept.stand_in
+                    result.shown, inputs.stand_in, kept.inputs.stand_in, kept.stand_in
                 ),
             )
         self._last = self._moving = result
@@ -163,11 +176,11 @@ class WarpSolver:
         result = self._solve_landmarks(inputs)
         self._moving = result
         mesh = inputs.stand_in or inputs.mesh
-        if result.factor is None or result.spline is None or mesh is None:
+        if result.factor is None or result.shown is None or mesh is None:
             return result
         vertices = self._shortcut(inputs, result.factor, mesh)
         if vertices is None:
-            vertices = self._evaluate(result.spline, mesh)
+            vertices = self._evaluate(result.shown, mesh)
         if inputs.stand_in is not None:
             return replace(result, stand_in=vertices)
         return replace(result, vertices=vertices)
@@ -184,17 +197,31 @@ class WarpSolver:
             return WarpResult(inputs)
         try:
             factor, spline = self._spline(inputs)
+            shown = self._applied(inputs, factor, spline)
         except PinwarpError as error:
             return WarpResult(inputs, problem=str(error))
         source, passengers = np.array(inputs.source), np.array(inputs.passengers).reshape(-1, 3)
-        misses = spline.evaluate(source) - np.array(inputs.destination)
+        misses = shown.evaluate(source) - np.array(inputs.destination)
         return WarpResult(
             inputs=inputs,
             factor=factor,
             spline=spline,
+            shown=shown,
             residuals=np.linalg.norm(misses, axis=1),
-            passengers=spline.evaluate(passengers) if len(passengers) else passengers,
+            passengers=shown.evaluate(passengers) if len(passengers) else passengers,
         )
+
+    def _applied(self, inputs: WarpInputs, factor: SourceFactor, spline: Spline) -> Spline:
+        for known in (self._moving, self._last):
+            if (
+                known is not None
+                and known.shown is not None
+                and known.spline is spline
+                and (known.inputs.components, known.inputs.blend)
+                == (inputs.components, inputs.blend)
+            ):
+                return known.shown
+        return applied(spline, factor, inputs.destination, inputs.components, inputs.blend)
 
     def _spline(self, inputs: WarpInputs) -> tuple[SourceFactor, Spline]:
         factor = None
@@ -241,6 +268,8 @@ class WarpSolver:
         if last is None or last.spline is None:
             return None
         was = last.inputs
+        if not (was.is_whole and inputs.is_whole):
+            return None
         if (was.source, was.planar) != (inputs.source, inputs.planar):
             return None
         if was.destination == inputs.destination:
@@ -281,51 +310,3 @@ class WarpSolver:
 
 def _solves_the_same(a: WarpInputs, b: WarpInputs) -> bool:
     return (a.destination, a.penalty, a.convention) == (b.destination, b.penalty, b.convention)
-
-
-def warped_mesh(session: Session) -> Mesh:
-    """Return the warped source mesh in double precision, for export.
-
-    Raises
-    ------
-    PinwarpError
-        When there is no source mesh, no pair, or the solve fails; the message says what to do.
-    """
-    mesh = session.mesh(Side.SOURCE)
-    if mesh is None:
-        raise PinwarpError("There is no source mesh to warp: open one first.")
-    return mesh.with_vertices(session_spline(session).evaluate(mesh.vertices))
-
-
-def warped_passengers(session: Session) -> tuple[Landmark, ...]:
-    """Return the passengers with the positions that the warp carries them to as destinations.
-
-    Raises
-    ------
-    PinwarpError
-        When there is no passenger, no pair, or the solve fails; the message says what to do.
-    """
-    passengers = [x for x in session.landmarks if x.role is Role.PASSENGER and x.source is not None]
-    if not passengers:
-        raise PinwarpError("There is no passenger: Ctrl+click on the source adds one.")
-    carried = session_spline(session).evaluate(positions(passengers, Side.SOURCE))
-    return tuple(
-        passenger.placed(Side.DESTINATION, place)
-        for passenger, place in zip(passengers, carried, strict=True)
-    )
-
-
-def session_spline(session: Session) -> Spline:
-    """Return the warp of a session, solved anew.
-
-    Raises
-    ------
-    PinwarpError
-        When there is no pair, or the solve fails.
-    """
-    pairs = session.pairs
-    if not pairs:
-        raise PinwarpError("There is no pair yet: place a landmark on both meshes first.")
-    factor = factorise(positions(pairs, Side.SOURCE), planar=session.planar)
-    destination = positions(pairs, Side.DESTINATION)
-    return solve(factor, destination, session.warping_penalty, session.convention)

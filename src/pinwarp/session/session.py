@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from pinwarp.core.components import Components
 from pinwarp.core.landmarks import Landmark, Side, pairs_of
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.mirror import mirrored_mesh
@@ -29,6 +30,9 @@ class Session:
         The equation that the penalty enters.
     planar
         Whether nearly planar landmarks are treated as planar.
+    components, blend
+        What of the warp is applied, to what is shown and to what is exported; see
+        :func:`~pinwarp.core.components.applied`.
     unit
         The unit of the meshes, for display.
     unknown
@@ -41,6 +45,8 @@ class Session:
     warping_penalty: float = 0.0
     convention: PenaltyConvention = PenaltyConvention.REGULARISING
     planar: bool = False
+    components: Components = Components.FULL
+    blend: float = 1.0
     unit: str = "mm"
     unknown: tuple[tuple[str, str], ...] = ()
 
@@ -87,6 +93,8 @@ def to_record(session: Session) -> SessionRecord:
         penalty_convention=session.convention.value,
         unit=session.unit,
         planar=session.planar,
+        components=session.components.value,
+        blend=session.blend,
         unknown=session.unknown,
     )
 
@@ -104,6 +112,8 @@ def from_record(
         warping_penalty=record.warping_penalty,
         convention=PenaltyConvention(record.penalty_convention),
         planar=record.planar,
+        components=Components(record.components),
+        blend=record.blend,
         unit=record.unit,
         unknown=record.unknown,
     )

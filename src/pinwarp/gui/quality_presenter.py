@@ -1,0 +1,61 @@
+"""Judges the pairs off the UI thread whenever the warp has changed, and tells who wants to know."""
+
+from __future__ import annotations
+
+import time
+
+from psygnal import Signal
+
+from pinwarp.gui.jobs import LatestWins
+from pinwarp.gui.presenter import TABLE_PAUSE, Presenter
+from pinwarp.session.quality import Quality, quality_of
+from pinwarp.session.results import WarpResult
+
+
+class QualityPresenter:
+    """Asks for the quality of each warp; ``quality_changed`` emits it, or None without a warp.
+
+    While something moves it is asked for now and then, since nobody reads figures that run.
+
+    Parameters
+    ----------
+    presenter
+        Where the warps come from.
+    """
+
+    quality_changed = Signal(object)
+
+    def __init__(self, presenter: Presenter) -> None:
+        self._presenter = presenter
+        self._judge = LatestWins(quality_of)
+        self._judge.computed.connect(self._on_quality)
+        self._judge.failed.connect(self._on_failure)
+        self._asked_at = 0.0
+        self.quality: Quality | None = None
+        presenter.result_changed.connect(self._on_result)
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether the last warp at rest is judged."""
+        return self._judge.is_idle
+
+    def shut_down(self) -> None:
+        """Stop the worker and let go of the presenter."""
+        self._presenter.result_changed.disconnect(self._on_result)
+        self._judge.shut_down()
+
+    def _on_result(self, result: WarpResult, at_rest: bool) -> None:
+        if result.factor is not None and not result.factor.has_modes:
+            # The eigenvalues follow once the hand rests, and this is asked again.
+            return
+        now = time.monotonic()
+        if at_rest or now - self._asked_at > TABLE_PAUSE:
+            self._asked_at = now
+            self._judge.request(result)
+
+    def _on_quality(self, quality: Quality | None) -> None:
+        self.quality = quality
+        self.quality_changed.emit(quality)
+
+    def _on_failure(self, error: Exception) -> None:
+        raise error

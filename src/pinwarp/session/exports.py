@@ -1,0 +1,83 @@
+"""What leaves a session: its warp as applied, and what that does to mesh and passengers."""
+
+from __future__ import annotations
+
+from pinwarp.core.components import Components, applied
+from pinwarp.core.errors import PinwarpError
+from pinwarp.core.factor import factorise
+from pinwarp.core.landmarks import Landmark, Role, Side, positions
+from pinwarp.core.mesh import Mesh
+from pinwarp.core.spline import Spline, solve
+from pinwarp.session.session import Session
+
+_IN_WORDS = {
+    Components.FULL: "the full warp",
+    Components.WITHOUT_POSE: "the warp without pose",
+    Components.AFFINE: "the affine fit only",
+    Components.SIMILARITY: "the similarity fit only",
+    Components.RIGID: "the rigid fit only",
+}
+
+
+def applied_in_words(session: Session) -> str:
+    """Say what of the warp is applied, to what is shown and to what is exported.
+
+    Examples
+    --------
+    >>> applied_in_words(Session(components=Components.AFFINE, blend=0.5))
+    'the affine fit only, 50% of the way from the aligned source'
+    """
+    words = _IN_WORDS[session.components]
+    if session.blend == 1 or session.components is Components.RIGID:
+        return words
+    start = "source" if session.components is Components.WITHOUT_POSE else "aligned source"
+    return f"{words}, {session.blend:.0%} of the way from the {start}"
+
+
+def warped_mesh(session: Session) -> Mesh:
+    """Return the warped source mesh in double precision, for export.
+
+    Raises
+    ------
+    PinwarpError
+        When there is no source mesh, no pair, or the solve fails; the message says what to do.
+    """
+    mesh = session.mesh(Side.SOURCE)
+    if mesh is None:
+        raise PinwarpError("There is no source mesh to warp: open one first.")
+    return mesh.with_vertices(session_spline(session).evaluate(mesh.vertices))
+
+
+def warped_passengers(session: Session) -> tuple[Landmark, ...]:
+    """Return the passengers with the positions that the warp carries them to as destinations.
+
+    Raises
+    ------
+    PinwarpError
+        When there is no passenger, no pair, or the solve fails; the message says what to do.
+    """
+    passengers = [x for x in session.landmarks if x.role is Role.PASSENGER and x.source is not None]
+    if not passengers:
+        raise PinwarpError("There is no passenger: Ctrl+click on the source adds one.")
+    carried = session_spline(session).evaluate(positions(passengers, Side.SOURCE))
+    return tuple(
+        passenger.placed(Side.DESTINATION, place)
+        for passenger, place in zip(passengers, carried, strict=True)
+    )
+
+
+def session_spline(session: Session) -> Spline:
+    """Return the warp of a session, solved anew: the components of it that are applied.
+
+    Raises
+    ------
+    PinwarpError
+        When there is no pair, or the solve fails.
+    """
+    pairs = session.pairs
+    if not pairs:
+        raise PinwarpError("There is no pair yet: place a landmark on both meshes first.")
+    factor = factorise(positions(pairs, Side.SOURCE), planar=session.planar)
+    destination = positions(pairs, Side.DESTINATION)
+    spline = solve(factor, destination, session.warping_penalty, session.convention)
+    return applied(spline, factor, destination, session.components, session.blend)

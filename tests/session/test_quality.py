@@ -1,0 +1,124 @@
+"""What the pairs of a session say about one another."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.core.femur import femur_landmarks
+
+from pinwarp.core.findings import FindingKind
+from pinwarp.core.landmarks import Landmark, as_position
+from pinwarp.core.spline import PenaltyConvention
+from pinwarp.session.quality import quality_of
+from pinwarp.session.results import WarpInputs, WarpSolver
+from pinwarp.session.session import Session
+
+
+def session_of(source, destination, names=None, **changes):
+    names = names or [f"p{i}" for i in range(len(source))]
+    return Session(
+        landmarks=tuple(
+            Landmark(name, as_position(a), as_position(b))
+            for name, a, b in zip(names, source, destination, strict=True)
+        ),
+        **changes,
+    )
+
+
+def quality(session):
+    return quality_of(WarpSolver().solve(WarpInputs.of(session)))
+
+
+def made_up(count, seed=0):
+    rng = np.random.default_rng(seed)
+    source = 50 * rng.normal(size=(count, 3))
+    return source, source * [1.1, 0.9, 1.0] + 4 * np.sin(source / 30) + rng.normal(size=(count, 3))
+
+
+@pytest.fixture
+def femur(shared_data):
+    return femur_landmarks(shared_data)
+
+
+def test_the_real_femur_has_one_inconsistent_pair_and_one_isolated_landmark(femur):
+    names, source, destination = femur
+    judged = quality(session_of(source, destination, names))
+    words = [finding.describe(names, "mm") for finding in judged.findings]
+    assert words[0] == (
+        "landmark_9 and landmark_3 are 8.77 mm apart on the source, 25.5 mm on the destination."
+    )
+    kinds = [finding.kind for finding in judged.findings]
+    first_isolated = kinds.index(FindingKind.ISOLATED)
+    assert set(kinds[first_isolated:]) == {FindingKind.ISOLATED}, "last: they are not wrong"
+    isolated = [names[finding.rows[0]] for finding in judged.findings[first_isolated:]]
+    assert "landmark_18" in isolated
+    largest = int(np.argmax(judged.left_out.distances))
+    assert names[largest] == "landmark_18"
+    suspicious = {
+        names[row]
+        for finding in judged.findings
+        if finding.kind is not FindingKind.ISOLATED
+        for row in finding.rows
+    }
+    assert suspicious >= {"landmark_9", "landmark_3"}
+    assert "landmark_18" not in suspicious
+    assert judged.left_out.rms == pytest.approx(11.1, abs=0.05)
+
+
+def test_two_exchanged_destinations_of_the_real_femur_are_named_as_swapped(femur):
+    names, source, destination = femur
+    a, b = names.index("landmark_5"), names.index("landmark_12")
+    destination[[a, b]] = destination[[b, a]]
+    found = quality(session_of(source, destination, names)).findings[0]
+    assert found.kind is FindingKind.SWAPPED
+    assert {names[row] for row in found.rows} == {"landmark_5", "landmark_12"}
+
+
+def test_a_mirrored_set_is_the_only_thing_said():
+    source, destination = made_up(14)
+    judged = quality(session_of(source, destination * [-1, 1, 1]))
+    assert [finding.kind for finding in judged.findings] == [FindingKind.MIRRORED]
+
+
+def test_a_landmark_of_a_swap_is_not_suspected_once_more():
+    source, destination = made_up(20)
+    destination[[3, 11]] = destination[[11, 3]]
+    findings = quality(session_of(source, destination)).findings
+    assert findings[0].kind is FindingKind.SWAPPED
+    assert not any({3, 11} & set(finding.rows) for finding in findings[1:])
+
+
+def test_close_landmarks_are_mentioned_with_the_others():
+    source, destination = made_up(14)
+    source[1] = source[0] + 1e-4
+    kinds = [finding.kind for finding in quality(session_of(source, destination)).findings]
+    assert FindingKind.CLOSE in kinds
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4])
+def test_few_pairs_have_no_leave_one_out_error(count):
+    source, destination = made_up(count)
+    judged = quality(session_of(source, destination))
+    assert judged.left_out is None
+    assert judged.curve is None
+
+
+def test_no_pairs_no_quality():
+    assert quality(Session()) is None
+
+
+def test_the_published_convention_has_no_leave_one_out_error_above_penalty_0():
+    source, destination = made_up(14)
+    session = session_of(source, destination, convention=PenaltyConvention.OPYNSIM)
+    assert quality(session).left_out is not None
+    assert quality(replace(session, warping_penalty=0.1)).left_out is None
+
+
+def test_the_affine_part_and_the_energy_are_those_of_the_warp():
+    source, _ = made_up(14)
+    judged = quality(session_of(source, source * [2, 1, 1] + 3))
+    assert judged.affine.scales == pytest.approx([2, 1, 1])
+    assert judged.energy == pytest.approx(np.zeros(3), abs=1e-6)
+    assert quality(session_of(*made_up(14))).energy.min() > 0.1
