@@ -107,15 +107,15 @@ def warp_figures(quality: Quality, unit: str) -> tuple[FigureRow, ...]:
     >>> pairs = tuple(Landmark(f"p{i}", at, (2 * at[0], at[1], at[2] + 3))
     ...               for i, at in enumerate(corners))
     >>> judged = quality_of(WarpSolver().solve(WarpInputs.of(Session(landmarks=pairs))))
-    >>> [figure.text for figure in warp_figures(judged, "mm")[2].figures]
+    >>> [figure.text for figure in warp_figures(judged, "mm")[3].figures]
     ['200.0%', '100.0%', '100.0%']
     """
     parts, noise = quality.affine, _noise(quality)
     length = float(np.linalg.norm(parts.translation))
-    rotation = [Figure("", parts.angle, "°", f"{_plain(parts.angle, 2)}°")]
-    if parts.angle >= 0.005:
-        about = zip("xyz", parts.axis.tolist(), strict=True)
-        rotation += [Figure(f"about {axis}", at, "", _plain(at, 3)) for axis, at in about]
+    axis = [
+        Figure(name, at, "", _plain(at, 3))
+        for name, at in zip("xyz", parts.axis.tolist(), strict=True)
+    ]
     largest_stretch = float(np.abs(parts.principal).max())
     return (
         FigureRow(
@@ -123,7 +123,12 @@ def warp_figures(quality: Quality, unit: str) -> tuple[FigureRow, ...]:
             _figures([*"xyz", "length"], [*parts.translation, length], unit, noise),
             "How far the middle of the source landmarks moves",
         ),
-        FigureRow("Rotation", tuple(rotation), "Right-handed, about a unit vector"),
+        FigureRow(
+            "Rotation",
+            (Figure("", parts.angle, "°", f"{_plain(parts.angle, 2)}°"),),
+            "Right-handed about the rotation axis",
+        ),
+        FigureRow("Rotation axis", tuple(axis), "A unit vector"),
         FigureRow(
             "Scale",
             _percents("xyz", parts.scales, largest_stretch),
@@ -135,8 +140,8 @@ def warp_figures(quality: Quality, unit: str) -> tuple[FigureRow, ...]:
             "How far each of these axes leans towards the other",
         ),
         FigureRow(
-            "Principal stretches",
-            _percents(("1st", "2nd", "3rd"), parts.principal, largest_stretch),
+            "Principal stretch",
+            _percents(("1", "2", "3"), parts.principal, largest_stretch),
             "How lengths grow along the three directions at right angles that stay so",
         ),
         FigureRow(
