@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from tests.core.femur import femur_landmarks
 from tests.session.test_quality import made_up, quality, session_of
 
-from pinwarp.core.alignment import decompose, fit_similarity
+from pinwarp.core.alignment import decompose
 from pinwarp.core.components import Components
 from pinwarp.core.factor import factorise
 from pinwarp.core.quality import bending_energy
@@ -23,38 +23,12 @@ from pinwarp.session.warp_figures import (
 )
 
 
-def rms(a, b):
-    return float(np.sqrt(np.mean(np.sum((a - b) ** 2, axis=1))))
-
-
 def rows_of(judged, unit="mm"):
     return {row.title: row.figures for row in warp_figures(judged, unit)}
 
 
 def texts(figures):
     return [figure.text for figure in figures]
-
-
-def test_each_part_of_the_warp_leaves_what_its_own_fit_leaves():
-    source, destination = made_up(14)
-    penalty = 5.0
-    left = quality(session_of(source, destination, warping_penalty=penalty)).rms_by_components
-    factor = factorise(source)
-    for part, mapped in (
-        (Components.FULL, solve(factor, destination, penalty).evaluate(source)),
-        (Components.WITHOUT_POSE, solve(factor, destination, penalty).evaluate(source)),
-        (Components.AFFINE, solve(factor, destination, math.inf).evaluate(source)),
-        (Components.SIMILARITY, fit_similarity(source, destination).apply(source)),
-        (Components.RIGID, fit_similarity(source, destination, scaling=False).apply(source)),
-    ):
-        assert left[part] == pytest.approx(rms(mapped, destination)), part
-
-
-def test_what_is_left_grows_from_the_full_warp_to_the_rigid_fit(shared_data):
-    names, source, destination = femur_landmarks(shared_data)
-    left = quality(session_of(source, destination, names)).rms_by_components
-    order = (Components.FULL, Components.AFFINE, Components.SIMILARITY, Components.RIGID)
-    assert [round(left[part], 1) for part in order] == [0.0, 11.0, 11.1, 29.6]
 
 
 def test_the_figures_are_those_of_the_affine_fit_and_of_the_warp():

@@ -29,8 +29,8 @@ from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Documents
 from pinwarp.gui.exports import Exports
 from pinwarp.gui.file_tasks import FileTasks
-from pinwarp.gui.guidance import Guidance
 from pinwarp.gui.grid_presenter import GridPresenter
+from pinwarp.gui.guidance import Guidance
 from pinwarp.gui.guide_bar import GuideBar
 from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY
 from pinwarp.gui.jobs import SlowJob

@@ -167,9 +167,7 @@ class WarpPanel(QScrollArea):
         self._session = session
         self.components.show_choice(session.components)
         self.blend_value.setText(f"{session.blend:.0%}")
-        self.blend.setEnabled(
-            bool(session.pairs) and session.components is not Components.RIGID
-        )
+        self.blend.setEnabled(bool(session.pairs) and session.components is not Components.RIGID)
         for label, text in zip(self.ends, _ENDS[session.components], strict=True):
             label.setText(text)
         if not self.blend.isSliderDown():

@@ -69,9 +69,7 @@ class WarpPresenter(QObject):
             choices.addAction(actions[key])
             actions[key].triggered.connect(lambda _checked=False, part=part: self._apply(part))
         panel.components_requested.connect(self._apply)
-        panel.blend_previewed.connect(
-            lambda blend: editor.preview(edits.set_blend(editor.committed, blend))
-        )
+        panel.blend_previewed.connect(self._preview)
         panel.blend_requested.connect(self._blend)
         panel.grid_requested.connect(lambda kind: editor.look(grid=kind))
         panel.grid_share_requested.connect(lambda share: editor.look(grid_share=share))
@@ -125,6 +123,11 @@ class WarpPresenter(QObject):
         session = edits.set_components(self._editor.committed, components)
         self._editor.commit(session, f"Apply {applied_in_words(session)}")
         self._editor.look(overlay=True)
+
+    def _preview(self, blend: float) -> None:
+        # What is hidden cannot be seen to change.
+        self._editor.look(overlay=True)
+        self._editor.preview(edits.set_blend(self._editor.committed, blend))
 
     def _blend(self, blend: float, is_step: bool) -> None:
         session = edits.set_blend(self._editor.committed, blend)

@@ -41,7 +41,13 @@ class GridKind(StrEnum):
 
     @property
     def axis(self) -> str | None:
-        """The axis of the source across the plane; None where it is no plane."""
+        """The axis of the source across the plane; None where it is no plane.
+
+        Examples
+        --------
+        >>> GridKind.PLANE_Y.axis, GridKind.BOX.axis
+        ('y', None)
+        """
         return self.value[-1] if self.value.startswith("plane") else None
 
 
