@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from qtpy.QtCore import QPoint, Qt
+from qtpy.QtCore import QEvent, QPoint, Qt
+from qtpy.QtGui import QHelpEvent
 from qtpy.QtTest import QTest
 from qtpy.QtWidgets import (
     QApplication,
@@ -13,6 +14,7 @@ from qtpy.QtWidgets import (
     QStyle,
     QStyleOptionSlider,
     QTabBar,
+    QToolTip,
 )
 
 from pinwarp.core.alignment import decompose, fit_similarity
@@ -355,6 +357,18 @@ def test_selected_figures_are_copied_as_they_are_read(user, panel):
     user.press(Qt.Key.Key_C, Qt.KeyboardModifier.ControlModifier, widget=figures)
     assert text in QApplication.clipboard().text()
     assert "quantity" not in QApplication.clipboard().text()
+
+
+def test_each_line_of_the_figures_says_what_it_means(user, panel):
+    figures = panel.figures
+    line = figures.sizeHint().height() / 10
+    for number, words in ((0, "middle of the source"), (1, "middle"), (2, "Right-handed")):
+        at = QPoint(20, round((number + 0.5) * line))
+        QApplication.sendEvent(
+            figures, QHelpEvent(QEvent.Type.ToolTip, at, figures.mapToGlobal(at))
+        )
+        assert words in QToolTip.text()
+    QToolTip.hideText()
 
 
 def test_without_pairs_and_with_few_the_panel_says_what_is_missing(user):

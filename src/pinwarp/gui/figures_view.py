@@ -6,7 +6,7 @@ import html
 from collections.abc import Sequence
 
 from qtpy.QtCore import QEvent, Qt, Signal
-from qtpy.QtGui import QKeyEvent, QKeySequence, QPalette
+from qtpy.QtGui import QColor, QKeyEvent, QKeySequence, QPalette
 from qtpy.QtWidgets import QLabel, QToolTip
 
 from pinwarp.session.warp_figures import Figure, FigureRow
@@ -43,16 +43,17 @@ class FiguresView(QLabel):
             self.setText(self._table())
 
     def _table(self) -> str:
-        quiet = self.palette().color(QPalette.ColorRole.PlaceholderText).name()
+        quiet = self.palette().color(QPalette.ColorRole.PlaceholderText)
+        quiet_name = quiet.name(QColor.NameFormat.HexArgb)
         lines = []
         self._lines = []
         for row in self.rows:
             title = html.escape(row.title)
             for first in range(0, len(row.figures), _ACROSS):
                 cells = "".join(
-                    _cells(figure, quiet) for figure in row.figures[first : first + _ACROSS]
+                    _cells(figure, quiet_name) for figure in row.figures[first : first + _ACROSS]
                 )
-                lines.append(f'<tr><td style="padding-right:0px">{title}</td>{cells}</tr>')
+                lines.append(f"<tr><td>{title}</td>{cells}</tr>")
                 self._lines.append(row)
                 title = ""
         return f'<table cellspacing="0" cellpadding="2">{"".join(lines)}</table>'
