@@ -16,6 +16,7 @@ from qtpy.QtWidgets import (
     QSizePolicy,
     QSlider,
     QSplitter,
+    QTabWidget,
     QToolBar,
     QVBoxLayout,
     QWidget,
@@ -28,6 +29,7 @@ from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Documents
 from pinwarp.gui.exports import Exports
 from pinwarp.gui.file_tasks import FileTasks
+from pinwarp.gui.grid_presenter import GridPresenter
 from pinwarp.gui.guidance import Guidance
 from pinwarp.gui.guide_bar import GuideBar
 from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY
@@ -44,6 +46,7 @@ from pinwarp.gui.shortcut_overlay import ShortcutOverlay
 from pinwarp.gui.table_presenter import TablePresenter
 from pinwarp.gui.view_controls import ViewControls
 from pinwarp.gui.viewport import Viewport
+from pinwarp.gui.warp_panel import WarpPanel
 from pinwarp.gui.warp_presenter import WarpPresenter
 from pinwarp.io.samples import sample_session
 from pinwarp.session.editor import Editor
@@ -71,6 +74,7 @@ class MainWindow(QMainWindow):
         self.jobs = SlowJob(self)
         self.actions_by_key = make_actions(self)
         self.landmarks = LandmarkPanel(self.table, self.actions_by_key)
+        self.warp_panel = WarpPanel(self.actions_by_key)
         self._dialogs = dialogs or Dialogs(self)
         self._recent = RecentFiles(settings)
         self._lay_out()
@@ -79,7 +83,12 @@ class MainWindow(QMainWindow):
         self._bone_edits = BoneEdits(self.editor, self.actions_by_key, self)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
         self.view_controls.add_to(self.findChild(QToolBar, "tools"))
-        self.warp_presenter = WarpPresenter(self.editor, self.actions_by_key, self)
+        self.warp_presenter = WarpPresenter(
+            self.editor, self.warp_panel, self.quality, self.actions_by_key, self._say, self
+        )
+        self.grid = GridPresenter(
+            self.editor, self.presenter, self.viewports, self.actions_by_key, self
+        )
         self.statusBar().addPermanentWidget(self.warp_presenter.note)
         self._tasks = FileTasks(self.editor, self.jobs, self._dialogs)
         self.documents = Documents(
@@ -123,17 +132,18 @@ class MainWindow(QMainWindow):
         column.addWidget(self.guide_bar)
         column.addWidget(splitter, 1)
         self.setCentralWidget(centre)
-        self._add_dock(
-            "landmarks", "Landmarks", self.landmarks, Qt.DockWidgetArea.RightDockWidgetArea
-        )
+        right = Qt.DockWidgetArea.RightDockWidgetArea
+        landmarks = self._add_dock("landmarks", "Landmarks", self.landmarks, right)
+        warp = self._add_dock("warp", "Warp", self.warp_panel, right)
+        self.tabifyDockWidget(landmarks, warp)
+        self.setTabPosition(right, QTabWidget.TabPosition.North)
+        landmarks.raise_()
         penalty = self._add_dock(
             "penalty", "Warping penalty", self.panel, Qt.DockWidgetArea.BottomDockWidgetArea
         )
         # The table keeps the whole height of the right edge.
         self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
-        self.resizeDocks(
-            [self.findChild(QDockWidget, "landmarks")], [430], Qt.Orientation.Horizontal
-        )
+        self.resizeDocks([landmarks], [430], Qt.Orientation.Horizontal)
         self.resizeDocks([penalty], [90], Qt.Orientation.Vertical)
         self._make_menus()
         self._make_toolbar()
@@ -325,7 +335,8 @@ class MainWindow(QMainWindow):
     @property
     def is_settled(self) -> bool:
         """Whether everything asked for is done and shown."""
-        return self.jobs.is_idle and self.presenter.is_settled and self.quality.is_settled
+        settled = (self.presenter.is_settled, self.quality.is_settled, self.grid.is_settled)
+        return self.jobs.is_idle and all(settled)
 
     # The end
 
@@ -343,12 +354,13 @@ class MainWindow(QMainWindow):
         self._settings.setValue("geometry", self.saveGeometry())
         self._settings.setValue("layout", self.saveState())
         self.jobs.shut_down()
+        self.grid.shut_down()
+        self.warp_presenter.shut_down()
         self.quality.shut_down()
         self.presenter.shut_down()
         self.table_presenter.shut_down()
         self._bone_edits.shut_down()
         self.view_controls.shut_down()
-        self.warp_presenter.shut_down()
         for signal in (self.editor.session_changed, self.editor.selection_changed):
             signal.disconnect(self._on_session)
         self.editor.view_changed.disconnect(self._on_view)

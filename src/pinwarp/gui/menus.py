@@ -22,9 +22,9 @@ MENUS = {
     "&Place": (
         "accept_ghost next_incomplete - load_template guide set_pattern - snap set_nudge lock"
     ),
-    "&Warp": "@components",
+    "&Warp": "@components play_blend - copy_figures",
     "&View": (
-        "overlay - fit focus @sides @cameras - section wireframe - "
+        "overlay @grid - fit focus @sides @cameras - section wireframe - "
         "markers_larger markers_smaller - show_coordinates -"
     ),
     "&Help": "shortcuts - about_penalty about",
@@ -36,6 +36,10 @@ SUBMENUS = {
     "@components": (
         "&Apply",
         "apply_full apply_without_pose - apply_affine apply_similarity apply_rigid",
+    ),
+    "@grid": (
+        "&Grid",
+        "grid_none grid_box - grid_plane_x grid_plane_y grid_plane_z - grid_next",
     ),
     "@sides": (
         "&Look From",
