@@ -38,10 +38,14 @@ def pair_names(
     pairs = session.pairs
     wanted: list[Places] = list(zip(inputs.source, inputs.destination, strict=True))
     places: list[Places] = [(pair.source, pair.destination) for pair in pairs]
-    if places == wanted:
-        return tuple(pair.name for pair in pairs)
     found: list[str | None] = [None] * len(wanted)
     free = dict(enumerate(pairs))
+    # Nearly all stand where they stood: the rest is looked for.
+    for row, (now, before) in enumerate(zip(places, wanted, strict=False)):
+        if now == before:
+            found[row] = free.pop(row).name
+    if not free:
+        return tuple(found)
     for key in (_both,) if exactly else (_both, _source, _destination):
         there = {key(places[i]): i for i in reversed(free)}
         for row, name in enumerate(found):

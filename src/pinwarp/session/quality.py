@@ -159,5 +159,9 @@ def _about_pairs(
         return (Finding(FindingKind.MIRRORED, (), 0.0),)
     swapped = swapped_pairs(factor, destination)
     explained = {row for finding in swapped for row in finding.rows}
-    others = suspects(factor, destination)
+    # With them put right, so that nobody is blamed for his neighbour's exchange.
+    mended = destination.copy()
+    for finding in swapped:
+        mended[list(finding.rows)] = destination[list(finding.rows[::-1])]
+    others = suspects(factor, mended)
     return (*swapped, *(x for x in others if not explained.intersection(x.rows)))
