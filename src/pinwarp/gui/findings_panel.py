@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from qtpy.QtCore import QEvent, QSize, Qt, Signal
+from qtpy.QtCore import QEvent, QObject, QSize, Qt, Signal
 from qtpy.QtGui import QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPalette, QResizeEvent
 from qtpy.QtWidgets import (
     QFrame,
@@ -32,6 +32,7 @@ _BOTH = (FindingKind.SWAPPED, FindingKind.INCONSISTENT)
 # Longer words than this are broken anywhere.
 _LONGEST_WORD = 24
 _SIGN = 16
+_PRESSING = (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Space)
 
 
 class FindingRow(QFrame):
@@ -68,6 +69,7 @@ class FindingRow(QFrame):
         for button in (self.remedy, self.disable):
             button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
             button.setCursor(Qt.CursorShape.ArrowCursor)
+            button.installEventFilter(self)
             buttons.addWidget(button)
         buttons.addStretch()
         row = QHBoxLayout(self)
@@ -144,6 +146,26 @@ class FindingRow(QFrame):
         if self.found is not None and len(self.found.names) == 1:
             self.disable_requested.emit(list(self.found.names))
 
+    def event(self, event: QEvent) -> bool:
+        """Take Space and Enter before the window does."""
+        if event.type() == QEvent.Type.ShortcutOverride and event.key() in _PRESSING:
+            event.accept()
+            return True
+        return bool(super().event(event))
+
+    def eventFilter(self, button: QObject, event: QEvent) -> bool:
+        """Let Space and Enter press the buttons."""
+        kind = event.type()
+        if (
+            kind not in (QEvent.Type.ShortcutOverride, QEvent.Type.KeyPress)
+            or event.key() not in _PRESSING
+        ):
+            return bool(super().eventFilter(button, event))
+        event.accept()
+        if kind == QEvent.Type.KeyPress:
+            button.click()
+        return True
+
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Choose the finding."""
         if event.button() == Qt.MouseButton.LeftButton:
@@ -152,7 +174,7 @@ class FindingRow(QFrame):
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Choose the finding by Enter or Space; the arrows go to its neighbours."""
         match event.key():
-            case Qt.Key.Key_Return | Qt.Key.Key_Enter | Qt.Key.Key_Space:
+            case key if key in _PRESSING:
                 self.chosen.emit()
             case Qt.Key.Key_Down | Qt.Key.Key_Up:
                 self._neighbour(1 if event.key() == Qt.Key.Key_Down else -1).setFocus()
