@@ -31,6 +31,6 @@ dashed arrow.</p>
 error is <b>standardised</b>: compared with what is usual for such surroundings. One that is large
 even so makes a pair <b>suspect</b>; one that is large only because the landmark is alone makes it
 <b>isolated</b>, which is no fault: place another landmark nearby if that part matters.</p>
-<p>Few pairs can hardly contradict one another. Of one wrong pair among 6, about 3 % are found,
-among 12 about 91 %: with fewer than a dozen an empty list is no proof.</p>
+<p>Few pairs can hardly contradict one another. In trials with one wrong pair among 6 it was found
+in 3 % of the cases, among 12 in 91 %: with fewer than a dozen an empty list is no proof.</p>
 """

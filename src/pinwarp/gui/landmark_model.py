@@ -23,8 +23,8 @@ from pinwarp.session.session import Session
 
 # The role under which a cell says how large its number is beside the largest of its column.
 SHARE = Qt.ItemDataRole.UserRole
-# Numbers without a column of their own, and where the tip tells them.
-_TOLD_IN = {"standardised": "left_out"}
+# Numbers without a column: tips ask for them when they are shown.
+_ONLY_TOLD = ("standardised",)
 _ROWS_MIME = "application/x-pinwarp-landmarks"
 # Made once: Qt asks for them cell by cell whenever the selection changes.
 _BETWEEN_ROWS = Qt.ItemFlag.ItemIsDropEnabled
@@ -48,6 +48,8 @@ class LandmarkModel(QAbstractTableModel):
         self._landmarks: list[Landmark] = []
         self._values: dict[str, dict[str, float]] = {}
         self._largest: dict[str, float] = {}
+        # By column: sorting compares thousands of times.
+        self._sort_keys: dict[int, list[Any]] = {}
         self._findings: dict[str, list[NamedFinding]] = {}
         # What was found by the rows of a warp, which outlast a change of the session.
         self._figures: dict[str, tuple[WarpInputs, Sequence[float]]] = {}
@@ -64,6 +66,13 @@ class LandmarkModel(QAbstractTableModel):
         name = landmark.name
         found = {key: values[name] for key, values in self._values.items() if name in values}
         return Row(landmark, found, self._findings.get(name, ()), self._session.unit)
+
+    def sort_keys(self, column: int) -> Sequence[Any]:
+        """Return what the rows are sorted by in a column."""
+        if column not in self._sort_keys:
+            key = COLUMNS[column].sort_key
+            self._sort_keys[column] = [key(self.row(i)) for i in range(len(self._landmarks))]
+        return self._sort_keys[column]
 
     # From the session to the rows
 
@@ -98,6 +107,7 @@ class LandmarkModel(QAbstractTableModel):
         for first, last in reversed(list(_runs(gone))):
             self.beginRemoveRows(QModelIndex(), first, last)
             del self._landmarks[first : last + 1]
+            self._sort_keys.clear()
             self.endRemoveRows()
 
     def _sort_like(self, names: Sequence[str]) -> None:
@@ -110,6 +120,7 @@ class LandmarkModel(QAbstractTableModel):
         old = self.persistentIndexList()
         row = {name: i for i, name in enumerate(after)}
         self._landmarks.sort(key=lambda landmark: place[landmark.name])
+        self._sort_keys.clear()
         moved = [self.index(row[before[i.row()]], i.column()) for i in old]
         self.changePersistentIndexList(old, moved)
         self.layoutChanged.emit()
@@ -120,12 +131,14 @@ class LandmarkModel(QAbstractTableModel):
         for first, last in _runs(arriving):
             self.beginInsertRows(QModelIndex(), first, last)
             self._landmarks[first:first] = new[first : last + 1]
+            self._sort_keys.clear()
             self.endInsertRows()
 
     def _update(self, new: Sequence[Landmark]) -> None:
         pairs = enumerate(zip(self._landmarks, new, strict=True))
         changed = [i for i, (a, b) in pairs if a is not b and a != b]
         self._landmarks = list(new)
+        self._sort_keys.clear()
         self._announce(changed, 0, len(COLUMNS) - 1)
 
     def _announce(self, rows: Sequence[int], first_column: int, last_column: int) -> None:
@@ -170,23 +183,25 @@ class LandmarkModel(QAbstractTableModel):
         if values == before:
             return
         self._values[key] = dict(values)
-        number = column_number(_TOLD_IN.get(key, key))
+        if key in _ONLY_TOLD:
+            return
+        number = column_number(key)
+        self._sort_keys.pop(number, None)
         rows = [
             i
             for i, landmark in enumerate(self._landmarks)
             if before.get(landmark.name) != values.get(landmark.name)
         ]
         self._announce(rows, number, number)
-        if COLUMNS[number].has_bar and key not in _TOLD_IN:
+        if COLUMNS[number].has_bar:
             self._measure(number)
 
     def _measure(self, number: int) -> None:
         """Find the longest bar of a column: if it changes, so do all the others."""
-        column = COLUMNS[number]
-        lengths = (column.sort_key(self.row(i)) for i in range(len(self._landmarks)))
+        key, lengths = COLUMNS[number].key, self.sort_keys(number)
         longest = max((length for length in lengths if length is not None), default=0.0)
-        if longest != self._largest.get(column.key) and self._landmarks:
-            self._largest[column.key] = longest
+        if longest != self._largest.get(key) and lengths:
+            self._largest[key] = longest
             ends = self.index(0, number), self.index(len(self._landmarks) - 1, number)
             self.dataChanged.emit(*ends, [SHARE])
 
@@ -265,7 +280,8 @@ class LandmarkModel(QAbstractTableModel):
             case Qt.ItemDataRole.ToolTipRole:
                 return (column.cell_tip or column.text)(row)
             case _ if role == SHARE and column.has_bar:
-                longest, length = self._largest.get(column.key), column.sort_key(row)
+                longest = self._largest.get(column.key)
+                length = self.sort_keys(index.column())[index.row()]
                 return length / longest if longest and length else 0.0
         return None
 

@@ -8,7 +8,6 @@ from qtpy.QtCore import QModelIndex, QObject, QSortFilterProxyModel, Qt
 
 from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import Landmark, LandmarkState
-from pinwarp.gui.landmark_columns import COLUMNS
 from pinwarp.gui.landmark_model import LandmarkModel
 from pinwarp.session.quality import NamedFinding
 
@@ -89,8 +88,8 @@ class LandmarkOrder(QSortFilterProxyModel):
 
     def lessThan(self, left: QModelIndex, right: QModelIndex) -> bool:
         """Return whether a row comes before another; cells without a value come last."""
-        key = COLUMNS[left.column()].sort_key
-        a, b = key(self._model.row(left.row())), key(self._model.row(right.row()))
+        keys = self._model.sort_keys(left.column())
+        a, b = keys[left.row()], keys[right.row()]
         if a is None or b is None:
             ascending = self.sortOrder() == Qt.SortOrder.AscendingOrder
             # Qt turns the comparison round for a descending order.
