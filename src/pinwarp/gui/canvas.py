@@ -100,7 +100,7 @@ class Canvas(FastView):
         self.layer.hint, self.layer.unit = scene.hint, scene.unit
         self.layer.radius = scene.marker_radius
         self.layer.set_markers(scene.markers)
-        self.layer.ghost = scene.ghost
+        self.layer.ghost, self.layer.arrows = scene.ghost, scene.arrows
         if before is None or scene.wireframe != before.wireframe:
             for drawn in (self._full, self._coarse):
                 drawn.set_wireframe(scene.wireframe)

@@ -29,10 +29,12 @@ from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Documents
 from pinwarp.gui.exports import Exports
 from pinwarp.gui.file_tasks import FileTasks
+from pinwarp.gui.findings_panel import FindingsPanel
+from pinwarp.gui.findings_presenter import FindingsPresenter
 from pinwarp.gui.grid_presenter import GridPresenter
 from pinwarp.gui.guidance import Guidance
 from pinwarp.gui.guide_bar import GuideBar
-from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY
+from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY, ABOUT_QUALITY
 from pinwarp.gui.jobs import SlowJob
 from pinwarp.gui.landmark_panel import LandmarkPanel
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
@@ -73,13 +75,24 @@ class MainWindow(QMainWindow):
         self.panel = PenaltyPanel()
         self.jobs = SlowJob(self)
         self.actions_by_key = make_actions(self)
-        self.landmarks = LandmarkPanel(self.table, self.actions_by_key)
         self.warp_panel = WarpPanel(self.actions_by_key)
+        self.findings = FindingsPanel()
+        self.landmarks = LandmarkPanel(self.table, self.findings, self.actions_by_key)
         self._dialogs = dialogs or Dialogs(self)
         self._recent = RecentFiles(settings)
         self._lay_out()
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
         self.quality = QualityPresenter(self.presenter)
+        self.quality.quality_changed.connect(self.presenter.show_quality)
+        self.findings_presenter = FindingsPresenter(
+            self.editor,
+            self.quality,
+            self.model,
+            self.landmarks,
+            self.actions_by_key,
+            self.presenter.requests,
+            self._say,
+        )
         self._bone_edits = BoneEdits(self.editor, self.actions_by_key, self)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
         self.view_controls.add_to(self.findChild(QToolBar, "tools"))
@@ -233,6 +246,7 @@ class MainWindow(QMainWindow):
             "select_none": editor.select,
             "about": lambda: self._dialogs.tell("About pinwarp", ABOUT),
             "about_penalty": lambda: self._dialogs.tell("About the warping penalty", ABOUT_PENALTY),
+            "about_quality": lambda: self._dialogs.tell("About the quality figures", ABOUT_QUALITY),
         }
         for key, function in does.items():
             # Qt's "checked" argument is of no use to any of them.
@@ -356,6 +370,8 @@ class MainWindow(QMainWindow):
         self.jobs.shut_down()
         self.grid.shut_down()
         self.warp_presenter.shut_down()
+        self.findings_presenter.shut_down()
+        self.quality.quality_changed.disconnect(self.presenter.show_quality)
         self.quality.shut_down()
         self.presenter.shut_down()
         self.table_presenter.shut_down()

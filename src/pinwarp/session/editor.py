@@ -59,6 +59,8 @@ class ViewState:
     ----------
     overlay, opacity
         Whether and how the warped source is drawn.
+    arrows
+        Whether arrows show where the warp misses its destinations.
     hovered
         The landmark under the mouse.
     locked
@@ -84,6 +86,7 @@ class ViewState:
 
     overlay: bool = True
     opacity: float = 0.55
+    arrows: bool = True
     hovered: str | None = None
     locked: bool = False
     guided: str | None = None

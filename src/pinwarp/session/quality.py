@@ -22,12 +22,33 @@ from pinwarp.core.quality import (
 )
 from pinwarp.core.spline import PenaltyConvention, Spline, solve
 from pinwarp.core.suspects import is_mirrored, suspects, swapped_pairs
+from pinwarp.session.pair_names import pair_names
 from pinwarp.session.results import WarpInputs, WarpResult
+from pinwarp.session.session import Session
 
 Matrix = NDArray[np.float64]
 
 # With fewer there is nothing to leave out: an affine map meets four.
 LEAST_PAIRS = 5
+
+
+@dataclass(frozen=True)
+class NamedFinding:
+    """A finding about landmarks of a session.
+
+    Attributes
+    ----------
+    finding
+        The fact.
+    names
+        The landmarks concerned, the more suspicious first; none where it concerns all.
+    sentence
+        The fact in words.
+    """
+
+    finding: Finding
+    names: tuple[str, ...]
+    sentence: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +88,35 @@ class Quality:
     rms_by_components: Mapping[Components, float]
     rank: int
 
+    def findings_in(self, session: Session) -> tuple[NamedFinding, ...]:
+        """Return the findings by name, as far as their pairs are still there.
+
+        Parameters
+        ----------
+        session
+            The session as it is now, which may have moved on since the pairs were judged.
+
+        Examples
+        --------
+        >>> from pinwarp.core.landmarks import Landmark
+        >>> from pinwarp.session.results import WarpSolver
+        >>> places = [(0, 0, 0), (0, 0, 0), (9, 0, 0), (0, 9, 0), (0, 0, 9)]
+        >>> ends = [(0, 0, 0), (2, 0, 0), *places[2:]]
+        >>> session = Session(landmarks=tuple(map(Landmark, "abcde", places, ends)))
+        >>> judged = quality_of(WarpSolver().solve(WarpInputs.of(session)))
+        >>> judged.findings_in(session)[0].sentence
+        'a and b lie at the same place on the source but 2 mm apart on the destination.'
+        """
+        names = pair_names(self.inputs, session)
+        words = [name or "" for name in names]
+        named = []
+        for finding in self.findings:
+            concerned = tuple(name for row in finding.rows if (name := names[row]) is not None)
+            if len(concerned) == len(finding.rows):
+                sentence = finding.describe(words, session.unit)
+                named.append(NamedFinding(finding, concerned, sentence))
+        return tuple(named)
+
     def finding_rows(self, row: int) -> tuple[Finding, ...]:
         """Return the findings that a pair has a part in."""
         return tuple(finding for finding in self.findings if row in finding.rows)
@@ -97,8 +147,8 @@ def quality_of(result: WarpResult) -> Quality | None:
         if regular:
             left_out = leave_one_out(factor, destination, inputs.penalty)
     found = _about_pairs(factor, inputs.source, destination) if enough else ()
-    isolated = tuple(finding for finding in found if finding.kind is FindingKind.ISOLATED)
-    grave = tuple(finding for finding in found if finding.kind is not FindingKind.ISOLATED)
+    isolated = tuple(finding for finding in found if not finding.is_grave)
+    grave = tuple(finding for finding in found if finding.is_grave)
     return Quality(
         inputs=inputs,
         left_out=left_out,
@@ -130,5 +180,9 @@ def _about_pairs(
         return (Finding(FindingKind.MIRRORED, (), 0.0),)
     swapped = swapped_pairs(factor, destination)
     explained = {row for finding in swapped for row in finding.rows}
-    others = suspects(factor, destination)
+    # With them put right, so that nobody is blamed for his neighbour's exchange.
+    mended = destination.copy()
+    for finding in swapped:
+        mended[list(finding.rows)] = destination[list(finding.rows[::-1])]
+    others = suspects(factor, mended)
     return (*swapped, *(x for x in others if not explained.intersection(x.rows)))
