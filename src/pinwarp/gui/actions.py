@@ -22,6 +22,7 @@ class ActionSpec:
     icon: str = ""
     tip: str = ""
     checkable: bool = False
+    button: str = ""
 
 
 SPECS = (
@@ -106,6 +107,34 @@ SPECS = (
     ActionSpec("apply_affine", "&Affine Fit Only", "", "", "Turned, moved, sized, sheared", True),
     ActionSpec("apply_similarity", "&Similarity Fit Only", "", "", "Turned, moved, sized", True),
     ActionSpec("apply_rigid", "&Rigid Fit Only", "", "", "Turned and moved", True),
+    ActionSpec(
+        "take_suggested",
+        "Take &Suggested Penalty",
+        "T",
+        "",
+        "The one with the least leave-one-out error",
+    ),
+    ActionSpec(
+        "swap_penalty",
+        # Behind the tab stands the key that is held; the action itself has none.
+        "Compare with &Previous Penalty\tB (hold)",
+        "",
+        "",
+        "Go back to the previous penalty; hold B only to look at it",
+    ),
+    ActionSpec(
+        "snapshot",
+        "Take S&napshot",
+        "P",
+        "",
+        "A picture of the warp at this penalty",
+        button="Snapshot",
+    ),
+    ActionSpec("sweep", "S&weep: 5 Snapshots", "", "", "From interpolation to the affine fit"),
+    ActionSpec("clear_snapshots", "&Clear Snapshots"),
+    ActionSpec(
+        "show_curve", "Penalty C&urve", "", "", "Leave-one-out error and residual", True, "Curve"
+    ),
     ActionSpec("markers_larger", "La&rger Landmarks", "]"),
     ActionSpec("markers_smaller", "S&maller Landmarks", "["),
     ActionSpec("wireframe", "W&ireframe Bones", "Shift+W", "", "Draw edges only", True),
@@ -129,6 +158,8 @@ def make_actions(parent: QObject) -> dict[str, QAction]:
             action.setShortcut(QKeySequence(spec.shortcut))
             words = f"{words} ({spec.shortcut})"
         action.setToolTip(words)
+        if spec.button:
+            action.setIconText(spec.button)
         if spec.icon:
             action.setIcon(icon(spec.icon))
         actions[spec.key] = action

@@ -36,10 +36,12 @@ from pinwarp.gui.landmark_panel import LandmarkPanel
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
 from pinwarp.gui.menus import fill_toolbar, make_menus, shortcut_groups
 from pinwarp.gui.penalty_panel import PenaltyPanel
+from pinwarp.gui.penalty_tuning import PenaltyTuning
 from pinwarp.gui.presenter import Presenter
 from pinwarp.gui.quality_presenter import QualityPresenter
 from pinwarp.gui.recent_files import RecentFiles
 from pinwarp.gui.shortcut_overlay import ShortcutOverlay
+from pinwarp.gui.snapshot_strip import SnapshotStrip
 from pinwarp.gui.table_presenter import TablePresenter
 from pinwarp.gui.view_controls import ViewControls
 from pinwarp.gui.viewport import Viewport
@@ -66,15 +68,29 @@ class MainWindow(QMainWindow):
         self.viewports = {side: Viewport(side) for side in Side}
         self.model = LandmarkModel(self)
         self.table = LandmarkTable(self.model)
-        self.panel = PenaltyPanel()
         self.jobs = SlowJob(self)
         self.actions_by_key = make_actions(self)
+        self.panel = PenaltyPanel(self.actions_by_key)
+        self.snapshot_strip = SnapshotStrip(
+            [self.actions_by_key[key] for key in ("snapshot", "sweep", "clear_snapshots")]
+        )
         self.landmarks = LandmarkPanel(self.table, self.actions_by_key)
         self._dialogs = dialogs or Dialogs(self)
         self._recent = RecentFiles(settings)
         self._lay_out()
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
         self.quality = QualityPresenter(self.presenter)
+        self.tuning = PenaltyTuning(
+            self.editor,
+            self.presenter,
+            self.quality,
+            self.viewports,
+            self.panel,
+            self.snapshot_strip,
+            self.actions_by_key,
+            self._say,
+            self,
+        )
         self._bone_edits = BoneEdits(self.editor, self.actions_by_key, self)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
         self.view_controls.add_to(self.findChild(QToolBar, "tools"))
@@ -122,18 +138,28 @@ class MainWindow(QMainWindow):
         self._add_dock(
             "landmarks", "Landmarks", self.landmarks, Qt.DockWidgetArea.RightDockWidgetArea
         )
-        penalty = self._add_dock(
-            "penalty", "Warping penalty", self.panel, Qt.DockWidgetArea.BottomDockWidgetArea
+        penalty = QWidget()
+        rows = QVBoxLayout(penalty)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(0)
+        rows.addWidget(self.snapshot_strip)
+        rows.addWidget(self.panel, 1)
+        self._penalty_dock = self._add_dock(
+            "penalty", "Warping penalty", penalty, Qt.DockWidgetArea.BottomDockWidgetArea
         )
         # The table keeps the whole height of the right edge.
         self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
         self.resizeDocks(
             [self.findChild(QDockWidget, "landmarks")], [430], Qt.Orientation.Horizontal
         )
-        self.resizeDocks([penalty], [90], Qt.Orientation.Vertical)
+        self._fit_penalty_dock()
         self._make_menus()
         self._make_toolbar()
         self._make_status_bar()
+
+    def _fit_penalty_dock(self) -> None:
+        """Give the penalty no more height than it needs: the rest is the bones'."""
+        self.resizeDocks([self._penalty_dock], [1], Qt.Orientation.Vertical)
 
     def _add_dock(
         self, key: str, title: str, widget: QWidget, area: Qt.DockWidgetArea
@@ -225,6 +251,8 @@ class MainWindow(QMainWindow):
         actions["overlay"].toggled.connect(lambda on: editor.look(overlay=on))
         actions["lock"].toggled.connect(lambda on: editor.look(locked=on))
         actions["guide"].toggled.connect(self.guidance.switch)
+        self.snapshot_strip.height_changed.connect(self._fit_penalty_dock)
+        actions["show_curve"].toggled.connect(self._fit_penalty_dock)
         self.presenter.requests.refused.connect(self._say)
         self.guidance.said.connect(self._say)
         self.opacity.valueChanged.connect(lambda value: editor.look(opacity=value / 100))
@@ -319,7 +347,8 @@ class MainWindow(QMainWindow):
     @property
     def is_settled(self) -> bool:
         """Whether everything asked for is done and shown."""
-        return self.jobs.is_idle and self.presenter.is_settled and self.quality.is_settled
+        parts = (self.presenter, self.quality, self.tuning)
+        return self.jobs.is_idle and all(part.is_settled for part in parts)
 
     # The end
 
@@ -328,6 +357,8 @@ class MainWindow(QMainWindow):
             stored = self._settings.value(key)
             if isinstance(stored, QByteArray):
                 restore(stored)
+        # Snapshots that stood there are not remembered.
+        self._fit_penalty_dock()
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Ask about unsaved work, then let go of workers and graphics in the right order."""
@@ -337,6 +368,7 @@ class MainWindow(QMainWindow):
         self._settings.setValue("geometry", self.saveGeometry())
         self._settings.setValue("layout", self.saveState())
         self.jobs.shut_down()
+        self.tuning.shut_down()
         self.quality.shut_down()
         self.presenter.shut_down()
         self.table_presenter.shut_down()

@@ -22,10 +22,10 @@ MENUS = {
     "&Place": (
         "accept_ghost next_incomplete - load_template guide set_pattern - snap set_nudge lock"
     ),
-    "&Warp": "@components",
+    "&Warp": ("take_suggested swap_penalty - snapshot sweep clear_snapshots - @components"),
     "&View": (
         "overlay - fit focus @sides @cameras - section wireframe - "
-        "markers_larger markers_smaller - show_coordinates -"
+        "markers_larger markers_smaller - show_coordinates - show_curve"
     ),
     "&Help": "shortcuts - about_penalty about",
 }

@@ -45,14 +45,7 @@ class ShortcutOverlay(QWidget):
         """Return what is listed: titles, and keys with what they do."""
         listed: list[tuple[str, Lines]] = [("Mouse", _MOUSE)]
         for title, actions in self._groups:
-            entries = [
-                (
-                    ", ".join(key.toString() for key in action.shortcuts()),
-                    action.text().replace("&", "").rstrip("…"),
-                )
-                for action in actions
-                if action.shortcuts()
-            ]
+            entries = [entry for entry in map(_entry, actions) if entry[0]]
             if entries:
                 listed.append((title, entries))
         return listed
@@ -128,6 +121,13 @@ class ShortcutOverlay(QWidget):
             painter.drawText(
                 QRectF(at.x() + split, y, width - split, line), Qt.AlignmentFlag.AlignVCenter, words
             )
+
+
+def _entry(action: QAction) -> tuple[str, str]:
+    """Return the keys of an action and its words; a key that is held stands behind a tab."""
+    words, _, held = action.text().replace("&", "").partition("\t")
+    keys = [key.toString() for key in action.shortcuts()] + [held] * bool(held)
+    return ", ".join(keys), words.rstrip("…")
 
 
 def _in_columns(heights: Sequence[float], count: int) -> list[list[int]]:

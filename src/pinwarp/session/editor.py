@@ -56,6 +56,8 @@ class ViewState:
         Whether the bones are drawn as edges only.
     section
         Share of the depth that the cross-section clips away; None without a cross-section.
+    curve
+        Whether the figures over the penalty are drawn above its slider.
     """
 
     overlay: bool = True
@@ -69,6 +71,7 @@ class ViewState:
     marker_radius: float = 6.0
     wireframe: bool = False
     section: float | None = None
+    curve: bool = True
 
 
 class Editor:
