@@ -7,6 +7,23 @@ import math
 from pinwarp.gui.scale_bar import round_length
 
 
+# From here on a number is written with a power of ten.
+_LARGEST = 1e6
+
+
+def format_number(value: float, digits: int = 3) -> str:
+    """Return a number with some significant digits, and never less than its whole part.
+
+    Examples
+    --------
+    >>> format_number(2.40047), format_number(1473.2), format_number(0.0)
+    ('2.4', '1473', '0')
+    """
+    if 10**digits <= abs(value) < _LARGEST:
+        return f"{value:.0f}"
+    return f"{value:.{digits}g}"
+
+
 def format_length(value: float, unit: str, digits: int = 4) -> str:
     """Return a length with a sensible number of digits and its unit.
 
@@ -17,7 +34,7 @@ def format_length(value: float, unit: str, digits: int = 4) -> str:
     """
     if math.isinf(value):
         return "affine"
-    return f"{value:.{digits}g} {unit}"
+    return f"{format_number(value, digits)} {unit}"
 
 
 def ticks(largest: float) -> tuple[float, ...]:

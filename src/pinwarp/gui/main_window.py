@@ -159,7 +159,11 @@ class MainWindow(QMainWindow):
 
     def _fit_penalty_dock(self) -> None:
         """Give the penalty no more height than it needs: the rest is the bones'."""
-        self.resizeDocks([self._penalty_dock], [1], Qt.Orientation.Vertical)
+        dock = self._penalty_dock
+        # What has just appeared or gone counts now, not only at the next turn of the event loop.
+        for widget in (self.panel, dock.widget(), dock):
+            widget.layout().activate()
+        self.resizeDocks([dock], [1], Qt.Orientation.Vertical)
 
     def _add_dock(
         self, key: str, title: str, widget: QWidget, area: Qt.DockWidgetArea

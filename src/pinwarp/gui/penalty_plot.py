@@ -25,7 +25,7 @@ from qtpy.QtWidgets import QSizePolicy, QWidget
 from pinwarp.core.factor import SourceFactor
 from pinwarp.core.quality import PenaltyCurve
 from pinwarp.gui import theme
-from pinwarp.gui.lengths import format_length, ticks
+from pinwarp.gui.lengths import format_length, format_number, ticks
 from pinwarp.gui.penalty_slider import PenaltySlider
 
 # How near to the suggestion's sign a click takes it, and half of its width.
@@ -68,7 +68,9 @@ class Plotted:
         left_out, residual = self.curve.at(1.0 - share)
         penalty = self.factor.penalty_at(1.0 - share)
         words = [
-            "affine fit" if math.isinf(penalty) else f"penalty {penalty:.3g} {self.unit}",
+            "affine fit"
+            if math.isinf(penalty)
+            else f"penalty {format_length(penalty, self.unit, 3)}",
             f"flexibility {1 - share:.0%}",
         ]
         if math.isfinite(left_out):
@@ -250,7 +252,8 @@ class PenaltyPlot(QWidget):
     def _paint_present(self, painter: QPainter, area: QRectF) -> None:
         if self._present is None:
             return
-        x = self.place_of(self._present)
+        # On a whole pixel, for a crisp line.
+        x = math.floor(self.place_of(self._present)) + 0.5
         painter.setPen(QPen(theme.text_colour(), 1))
         painter.drawLine(QLineF(x, area.top(), x, self.height()))
         if self._present_figures is None:
@@ -274,7 +277,7 @@ class PenaltyPlot(QWidget):
             painter.setBrush(colour)
             painter.drawEllipse(QPointF(x, level), 4, 4)
             middle = min(max(level + aside * height, highest), lowest)
-            self._paint_figure(painter, f"{value:.3g}", colour, QPointF(x, middle))
+            self._paint_figure(painter, format_number(value), colour, QPointF(x, middle))
             # The residual, which is never the larger, stands below.
             highest, lowest = middle + height, lowest + height
 

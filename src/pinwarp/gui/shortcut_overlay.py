@@ -87,12 +87,15 @@ class ShortcutOverlay(QWidget):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.fillRect(self.rect(), QColor(20, 24, 30, 225))
         listed = self.lines()
-        line = painter.fontMetrics().height() + 5
-        heights = [(len(entries) + 2) * line for _, entries in listed]
-        columns = _in_columns(heights, _COLUMNS)
+        rows = [len(entries) + 2 for _, entries in listed]
+        columns = _in_columns(rows, _COLUMNS)
+        longest = max(sum(rows[i] for i in column) for column in columns)
+        # A low window moves the lines together.
+        line = min(painter.fontMetrics().height() + 5, (self.height() - 32) // longest)
+        heights = [count * line for count in rows]
         width = min(1000, self.width() - 60)
         tallest = max(sum(heights[i] for i in column) for column in columns)
-        top = max(24.0, (self.height() - tallest) / 2)
+        top = max(16.0, (self.height() - tallest) / 2)
         left = (self.width() - width) / 2
         for number, column in enumerate(columns):
             at = QPointF(left + number * width / _COLUMNS, top)

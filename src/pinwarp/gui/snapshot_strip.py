@@ -31,7 +31,7 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.gui import theme
-from pinwarp.gui.lengths import format_length
+from pinwarp.gui.lengths import format_length, format_number
 from pinwarp.session.results import WarpInputs
 
 # The largest picture, in logical pixels.
@@ -85,7 +85,7 @@ class Snapshot:
         figures = [] if self.flexibility is None else [f"{self.flexibility:.0%} flexible"]
         for words, length in (("LOO", self.leave_one_out), ("Resid.", self.residual)):
             if length is not None:
-                figures.append(f"{words} {length:.3g}")
+                figures.append(f"{words} {format_number(length)}")
         return tuple(figures)
 
 
@@ -142,7 +142,11 @@ class SnapshotTile(QFrame):
         left_out = shot.leave_one_out
         self.setToolTip(
             f"Click to take the penalty {shot.title}{still}"
-            + (f"\nRMS leave-one-out error {left_out:.4g} {shot.unit}" if left_out else "")
+            + (
+                f"\nRMS leave-one-out error {format_length(left_out, shot.unit)}"
+                if left_out
+                else ""
+            )
         )
         self.setAccessibleName(f"Snapshot: {shot.title}")
 
@@ -189,6 +193,8 @@ class SnapshotStrip(QScrollArea):
         self._row.addStretch(1)
         self.setWidget(content)
         self.tiles: list[SnapshotTile] = []
+        self._is_going_to_end = False
+        self.horizontalScrollBar().rangeChanged.connect(self._on_range)
         self.hide()
 
     def show_snapshots(self, snapshots: Sequence[Snapshot]) -> None:
@@ -209,9 +215,13 @@ class SnapshotStrip(QScrollArea):
 
     def show_last(self) -> None:
         """Scroll to the newest one."""
-        if self.tiles:
-            self._row.activate()
-            self.ensureWidgetVisible(self.tiles[-1])
+        # The row is laid out later; until then there is nothing to scroll to.
+        self._is_going_to_end = True
+        self._on_range(0, self.horizontalScrollBar().maximum())
+
+    def _on_range(self, _first: int, last: int) -> None:
+        if self._is_going_to_end:
+            self.horizontalScrollBar().setValue(last)
 
     def _tile(self, snapshot: Snapshot) -> SnapshotTile:
         tile = SnapshotTile(snapshot)
@@ -234,6 +244,7 @@ class SnapshotStrip(QScrollArea):
         """Scroll along the row."""
         turned = event.angleDelta().y() or event.angleDelta().x()
         bar = self.horizontalScrollBar()
+        self._is_going_to_end = False
         bar.setValue(bar.value() - turned)
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:

@@ -68,7 +68,8 @@ class Snapshots(QObject):
         self._actions = actions
         self._say = say
         self.snapshots: tuple[Snapshot, ...] = ()
-        self._swept: list[float] = []
+        self._ahead: list[float] = []
+        self._swept: list[Snapshot] = []
         self._preview = PassingPreview(editor, self)
         self._preview.ended.connect(self._on_ended)
         actions["snapshot"].triggered.connect(self.take)
@@ -97,7 +98,7 @@ class Snapshots(QObject):
         if result is None or result.shown is None:
             self._say(_NO_WARP)
         else:
-            self._keep(result)
+            self._keep(self._snapshot(result))
 
     def sweep(self) -> None:
         """Picture the warp from interpolation to the affine fit."""
@@ -106,7 +107,8 @@ class Snapshots(QObject):
         if factor is None or not factor.has_modes or not len(factor.poles):
             self._say(_NO_SCALE)
         elif not self._editor.is_previewing:
-            self._swept = [factor.penalty_at(flexibility) for flexibility in SWEEP]
+            self._ahead = [factor.penalty_at(flexibility) for flexibility in SWEEP]
+            self._swept = []
             self._show_next()
 
     def clear(self) -> None:
@@ -114,32 +116,34 @@ class Snapshots(QObject):
         self.snapshots = ()
         self._show()
 
-    # A sweep: each warp is previewed, and pictured when it has arrived
+    # A sweep: each warp is previewed, and pictured when it has arrived; all appear at the end,
+    # since a strip that appears makes the views smaller
 
     def _show_next(self) -> None:
-        self._preview.show(edits.set_penalty(self._editor.committed, self._swept[0]))
+        self._preview.show(edits.set_penalty(self._editor.committed, self._ahead[0]))
 
     def _on_result(self, result: WarpResult, _at_rest: bool) -> None:
         session = self._preview.session
         if session is None or result.inputs != WarpInputs.of(session, result.inputs.stand_in):
             return
-        self._keep(result)
-        self._swept.pop(0)
-        if self._swept:
+        self._swept.append(self._snapshot(result))
+        self._ahead.pop(0)
+        if self._ahead:
             self._show_next()
         else:
             self._preview.end()
 
     def _on_ended(self) -> None:
-        if self._swept:
-            left = len(self._swept)
-            self._say(f"The sweep was stopped: {len(SWEEP) - left} of {len(SWEEP)} snapshots.")
-        self._swept = []
+        if self._ahead:
+            self._say("The sweep was stopped before all its snapshots were taken.")
+        else:
+            self._keep(*self._swept)
+        self._ahead, self._swept = [], []
 
     # The snapshots
 
-    def _keep(self, result: WarpResult) -> None:
-        self.snapshots = (*self.snapshots, self._snapshot(result))[-MOST:]
+    def _keep(self, *taken: Snapshot) -> None:
+        self.snapshots = (*self.snapshots, *taken)[-MOST:]
         self._show()
         self._strip.show_last()
 
