@@ -83,8 +83,7 @@ def test_a_click_on_the_curve_takes_the_penalty_there(user, panel):
     plot = panel.plot
     x = plot.place_of(0.4)
     click_plot(user, x, plot.height() / 2)
-    assert user.window.model is not None
-    flexibility = panel._factor.flexibility(user.session.warping_penalty)
+    flexibility = panel.plot.plotted.factor.flexibility(user.session.warping_penalty)
     assert flexibility == pytest.approx(0.6, abs=0.005)
     assert abs(handle_centre(panel) - x) <= 2
     user.trigger("undo")
@@ -125,7 +124,7 @@ def test_a_click_on_its_sign_takes_exactly_the_suggested_penalty(user, noisy_pan
 
 def test_the_least_error_is_where_the_sign_is(user, noisy_panel):
     curve = noisy_panel.plot.plotted.curve
-    left_out, _ = curve.at(noisy_panel._factor.flexibility(curve.suggested))
+    left_out, _ = curve.at(noisy_panel.plot.plotted.factor.flexibility(curve.suggested))
     assert left_out == pytest.approx(curve.leave_one_out.min())
     assert "least" not in noisy_panel.warning.text()
 

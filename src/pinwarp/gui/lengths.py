@@ -6,7 +6,6 @@ import math
 
 from pinwarp.gui.scale_bar import round_length
 
-
 # From here on a number is written with a power of ten.
 _LARGEST = 1e6
 
