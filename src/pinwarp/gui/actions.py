@@ -22,6 +22,7 @@ class ActionSpec:
     icon: str = ""
     tip: str = ""
     checkable: bool = False
+    button: str = ""
 
 
 SPECS = (
@@ -120,7 +121,7 @@ SPECS = (
     ActionSpec("apply_affine", "&Affine Fit Only", "", "", "Turned, moved, sized, sheared", True),
     ActionSpec("apply_similarity", "&Similarity Fit Only", "", "", "Turned, moved, sized", True),
     ActionSpec("apply_rigid", "&Rigid Fit Only", "", "", "Turned and moved", True),
-    ActionSpec("play_blend", "&Play Blend", "B", "play", "From the source to the warp", True),
+    ActionSpec("play_blend", "&Play Blend", "Shift+B", "play", "From the source to the warp", True),
     ActionSpec("copy_figures", "&Copy Figures", "", "", "The warp taken apart, as a table"),
     ActionSpec("grid_none", "&None", "", "", "No grid", True),
     ActionSpec("grid_box", "&Box", "", "", "Straight on the source, bent by the warp", True),
@@ -128,6 +129,34 @@ SPECS = (
     ActionSpec("grid_plane_y", "Plane Across &Y", "", "", "Of the source's axes", True),
     ActionSpec("grid_plane_z", "Plane Across &Z", "", "", "Of the source's axes", True),
     ActionSpec("grid_next", "N&ext Grid", "D"),
+    ActionSpec(
+        "take_suggested",
+        "Take &Suggested Penalty",
+        "T",
+        "",
+        "The one with the least leave-one-out error",
+    ),
+    ActionSpec(
+        "swap_penalty",
+        # Behind the tab stands the key that is held; the action itself has none.
+        "Compare with &Previous Penalty\tB (hold)",
+        "",
+        "",
+        "Go back to the previous penalty; hold B only to look at it",
+    ),
+    ActionSpec(
+        "snapshot",
+        "Take S&napshot",
+        "P",
+        "",
+        "A picture of the warp at this penalty",
+        button="Snapshot",
+    ),
+    ActionSpec("sweep", "S&weep: 5 Snapshots", "", "", "From interpolation to the affine fit"),
+    ActionSpec("clear_snapshots", "&Clear Snapshots"),
+    ActionSpec(
+        "show_curve", "Penalty C&urve", "", "", "Leave-one-out error and residual", True, "Curve"
+    ),
     ActionSpec("markers_larger", "La&rger Landmarks", "]"),
     ActionSpec("markers_smaller", "S&maller Landmarks", "["),
     ActionSpec("wireframe", "W&ireframe Bones", "Shift+W", "", "Draw edges only", True),
@@ -152,6 +181,8 @@ def make_actions(parent: QObject) -> dict[str, QAction]:
             action.setShortcut(QKeySequence(spec.shortcut))
             words = f"{words} ({spec.shortcut})"
         action.setToolTip(words)
+        if spec.button:
+            action.setIconText(spec.button)
         if spec.icon:
             action.setIcon(icon(spec.icon))
         actions[spec.key] = action

@@ -40,11 +40,13 @@ from pinwarp.gui.landmark_panel import LandmarkPanel
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
 from pinwarp.gui.menus import fill_toolbar, make_menus, shortcut_groups
 from pinwarp.gui.penalty_panel import PenaltyPanel
+from pinwarp.gui.penalty_tuning import PenaltyTuning
 from pinwarp.gui.presenter import Presenter
 from pinwarp.gui.quality_presenter import QualityPresenter
 from pinwarp.gui.recent_files import RecentFiles
 from pinwarp.gui.report_export import ReportExport
 from pinwarp.gui.shortcut_overlay import ShortcutOverlay
+from pinwarp.gui.snapshot_strip import SnapshotStrip
 from pinwarp.gui.table_presenter import TablePresenter
 from pinwarp.gui.view_controls import ViewControls
 from pinwarp.gui.viewport import Viewport
@@ -72,9 +74,12 @@ class MainWindow(QMainWindow):
         self.viewports = {side: Viewport(side) for side in Side}
         self.model = LandmarkModel(self)
         self.table = LandmarkTable(self.model)
-        self.panel = PenaltyPanel()
         self.jobs = SlowJob(self)
         self.actions_by_key = make_actions(self)
+        self.panel = PenaltyPanel(self.actions_by_key)
+        self.snapshot_strip = SnapshotStrip(
+            [self.actions_by_key[key] for key in ("snapshot", "sweep", "clear_snapshots")]
+        )
         self.warp_panel = WarpPanel(self.actions_by_key)
         self.findings = FindingsPanel()
         self.landmarks = LandmarkPanel(self.table, self.findings, self.actions_by_key)
@@ -92,6 +97,17 @@ class MainWindow(QMainWindow):
             self.actions_by_key,
             self.presenter.requests,
             self._say,
+        )
+        self.tuning = PenaltyTuning(
+            self.editor,
+            self.presenter,
+            self.quality,
+            self.viewports,
+            self.panel,
+            self.snapshot_strip,
+            self.actions_by_key,
+            self._say,
+            self,
         )
         self._bone_edits = BoneEdits(self.editor, self.actions_by_key, self)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
@@ -151,16 +167,30 @@ class MainWindow(QMainWindow):
         self.tabifyDockWidget(landmarks, warp)
         self.setTabPosition(right, QTabWidget.TabPosition.North)
         landmarks.raise_()
-        penalty = self._add_dock(
-            "penalty", "Warping penalty", self.panel, Qt.DockWidgetArea.BottomDockWidgetArea
+        penalty = QWidget()
+        rows = QVBoxLayout(penalty)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(0)
+        rows.addWidget(self.snapshot_strip)
+        rows.addWidget(self.panel, 1)
+        self._penalty_dock = self._add_dock(
+            "penalty", "Warping penalty", penalty, Qt.DockWidgetArea.BottomDockWidgetArea
         )
         # The table keeps the whole height of the right edge.
         self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
         self.resizeDocks([landmarks], [430], Qt.Orientation.Horizontal)
-        self.resizeDocks([penalty], [90], Qt.Orientation.Vertical)
+        self._fit_penalty_dock()
         self._make_menus()
         self._make_toolbar()
         self._make_status_bar()
+
+    def _fit_penalty_dock(self) -> None:
+        """Give the penalty no more height than it needs: the rest is the bones'."""
+        dock = self._penalty_dock
+        # What has just appeared or gone counts now, not only at the next turn of the event loop.
+        for widget in (self.panel, dock.widget(), dock):
+            widget.layout().activate()
+        self.resizeDocks([dock], [1], Qt.Orientation.Vertical)
 
     def _add_dock(
         self, key: str, title: str, widget: QWidget, area: Qt.DockWidgetArea
@@ -254,6 +284,8 @@ class MainWindow(QMainWindow):
         actions["overlay"].toggled.connect(lambda on: editor.look(overlay=on))
         actions["lock"].toggled.connect(lambda on: editor.look(locked=on))
         actions["guide"].toggled.connect(self.guidance.switch)
+        self.snapshot_strip.height_changed.connect(self._fit_penalty_dock)
+        actions["show_curve"].toggled.connect(self._fit_penalty_dock)
         self.presenter.requests.refused.connect(self._say)
         self.guidance.said.connect(self._say)
         self.opacity.valueChanged.connect(lambda value: editor.look(opacity=value / 100))
@@ -349,8 +381,8 @@ class MainWindow(QMainWindow):
     @property
     def is_settled(self) -> bool:
         """Whether everything asked for is done and shown."""
-        settled = (self.presenter.is_settled, self.quality.is_settled, self.grid.is_settled)
-        return self.jobs.is_idle and all(settled)
+        parts = (self.presenter, self.quality, self.tuning, self.grid)
+        return self.jobs.is_idle and all(part.is_settled for part in parts)
 
     # The end
 
@@ -359,6 +391,8 @@ class MainWindow(QMainWindow):
             stored = self._settings.value(key)
             if isinstance(stored, QByteArray):
                 restore(stored)
+        # Snapshots that stood there are not remembered.
+        self._fit_penalty_dock()
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Ask about unsaved work, then let go of workers and graphics in the right order."""
@@ -372,6 +406,7 @@ class MainWindow(QMainWindow):
         self.warp_presenter.shut_down()
         self.findings_presenter.shut_down()
         self.quality.quality_changed.disconnect(self.presenter.show_quality)
+        self.tuning.shut_down()
         self.quality.shut_down()
         self.presenter.shut_down()
         self.table_presenter.shut_down()

@@ -41,6 +41,7 @@ class MarkerLayer(QWidget):
         self.radius = RADIUS
         self.painted_for: object = None
         self._markers: tuple[Marker, ...] = ()
+        self._badge = ""
         # Which places the bone hides, as long as the camera stands still.
         self._hidden: dict[Position, bool] = {}
         self._hidden_for: object = None
@@ -56,6 +57,17 @@ class MarkerLayer(QWidget):
         """Show other landmarks."""
         self._markers = markers
         self.update()
+
+    @property
+    def badge(self) -> str:
+        """What is said on a plate in the corner."""
+        return self._badge
+
+    def show_badge(self, words: str) -> None:
+        """Say that something unusual is shown; empty words take the plate away."""
+        if words != self._badge:
+            self._badge = words
+            self.update()
 
     def places(self) -> NDArray:
         """Return where the landmarks are on the screen: (n, 2) logical pixels."""
@@ -100,6 +112,8 @@ class MarkerLayer(QWidget):
         places, hidden = self.places(), self.hidden()
         reached_from_right = self._paint_arrows(painter, hidden)
         self._paint_markers(painter, places, hidden, reached_from_right)
+        if self._badge:
+            self._paint_badge(painter)
         painter.end()
 
     def _paint_title(self, painter: QPainter) -> None:
@@ -125,6 +139,19 @@ class MarkerLayer(QWidget):
         painter.drawRoundedRect(plate, 10, 10)
         painter.setPen(QColor(theme.INK))
         painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, self.hint)
+
+    def _paint_badge(self, painter: QPainter) -> None:
+        metrics, margin = painter.fontMetrics(), 10
+        words = metrics.elidedText(
+            self._badge, Qt.TextElideMode.ElideRight, self.width() - 2 * margin - 20
+        )
+        plate = QRectF(0, margin, metrics.horizontalAdvance(words) + 20, metrics.height() + 8)
+        plate.moveRight(self.width() - margin)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(theme.INK))
+        painter.drawRoundedRect(plate, 6, 6)
+        painter.setPen(QColor(theme.PAPER))
+        painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, words)
 
     def _paint_ghost(self, painter: QPainter, ghost: Ghost) -> None:
         """Paint a dashed ring where a landmark is expected, in a disc as wide as the doubt."""

@@ -23,10 +23,13 @@ MENUS = {
         "accept_ghost next_incomplete next_finding - "
         "load_template guide set_pattern - snap set_nudge lock"
     ),
-    "&Warp": "@components play_blend - copy_figures",
+    "&Warp": (
+        "take_suggested swap_penalty - snapshot sweep clear_snapshots - "
+        "@components play_blend - copy_figures"
+    ),
     "&View": (
         "overlay arrows @grid - fit focus @sides @cameras - section wireframe - "
-        "markers_larger markers_smaller - show_coordinates -"
+        "markers_larger markers_smaller - show_coordinates show_curve -"
     ),
     "&Help": "shortcuts - about_penalty about_quality about",
 }

@@ -82,6 +82,8 @@ class ViewState:
     grid, grid_share
         The grid that is drawn, and where a plane of it crosses its axis: from 0, the low side of
         the source, to 1.
+    curve
+        Whether the figures over the penalty are drawn above its slider.
     """
 
     overlay: bool = True
@@ -98,6 +100,7 @@ class ViewState:
     section: float | None = None
     grid: GridKind = GridKind.NONE
     grid_share: float = 0.5
+    curve: bool = True
 
 
 class Editor:
