@@ -34,6 +34,8 @@ from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY
 from pinwarp.gui.jobs import SlowJob
 from pinwarp.gui.landmark_panel import LandmarkPanel
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
+from pinwarp.gui.map_panel import MapPanel
+from pinwarp.gui.map_presenter import MapPresenter
 from pinwarp.gui.menus import fill_toolbar, make_menus, shortcut_groups
 from pinwarp.gui.penalty_panel import PenaltyPanel
 from pinwarp.gui.presenter import Presenter
@@ -70,11 +72,16 @@ class MainWindow(QMainWindow):
         self.jobs = SlowJob(self)
         self.actions_by_key = make_actions(self)
         self.landmarks = LandmarkPanel(self.table, self.actions_by_key)
+        self.map_panel = MapPanel(self.actions_by_key["place_suggested"])
         self._dialogs = dialogs or Dialogs(self)
         self._recent = RecentFiles(settings)
         self._lay_out()
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
         self.quality = QualityPresenter(self.presenter)
+        self.maps = MapPresenter(
+            self.editor, self.presenter, self.viewports, self.map_panel, self.actions_by_key, self
+        )
+        self.statusBar().addPermanentWidget(self.maps.fold_button)
         self._bone_edits = BoneEdits(self.editor, self.actions_by_key, self)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
         self.view_controls.add_to(self.findChild(QToolBar, "tools"))
@@ -119,17 +126,16 @@ class MainWindow(QMainWindow):
         column.addWidget(self.guide_bar)
         column.addWidget(splitter, 1)
         self.setCentralWidget(centre)
-        self._add_dock(
-            "landmarks", "Landmarks", self.landmarks, Qt.DockWidgetArea.RightDockWidgetArea
-        )
+        right = Qt.DockWidgetArea.RightDockWidgetArea
+        landmarks = self._add_dock("landmarks", "Landmarks", self.landmarks, right)
+        self.tabifyDockWidget(landmarks, self._add_dock("map", "Map", self.map_panel, right))
+        landmarks.raise_()
         penalty = self._add_dock(
             "penalty", "Warping penalty", self.panel, Qt.DockWidgetArea.BottomDockWidgetArea
         )
         # The table keeps the whole height of the right edge.
         self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
-        self.resizeDocks(
-            [self.findChild(QDockWidget, "landmarks")], [430], Qt.Orientation.Horizontal
-        )
+        self.resizeDocks([landmarks], [430], Qt.Orientation.Horizontal)
         self.resizeDocks([penalty], [90], Qt.Orientation.Vertical)
         self._make_menus()
         self._make_toolbar()
@@ -227,7 +233,11 @@ class MainWindow(QMainWindow):
         actions["guide"].toggled.connect(self.guidance.switch)
         self.presenter.requests.refused.connect(self._say)
         self.guidance.said.connect(self._say)
-        self.opacity.valueChanged.connect(lambda value: editor.look(opacity=value / 100))
+        self.maps.refused.connect(self._say)
+        self.maps.map_changed.connect(self._on_view)
+        self.opacity.valueChanged.connect(
+            lambda value: editor.look(**{self.maps.opacity_key: value / 100})
+        )
         for side, viewport in self.viewports.items():
             viewport.files_dropped.connect(
                 lambda paths, side=side: documents.open_files(side, paths)
@@ -297,7 +307,7 @@ class MainWindow(QMainWindow):
         self.actions_by_key["lock"].setChecked(view.locked)
         self.actions_by_key["guide"].setChecked(view.guided is not None)
         self.opacity.setEnabled(view.overlay)
-        self.opacity.setValue(round(view.opacity * 100))
+        self.opacity.setValue(round(getattr(view, self.maps.opacity_key) * 100))
         self.guidance.show()
 
     # Slow jobs
@@ -319,7 +329,12 @@ class MainWindow(QMainWindow):
     @property
     def is_settled(self) -> bool:
         """Whether everything asked for is done and shown."""
-        return self.jobs.is_idle and self.presenter.is_settled and self.quality.is_settled
+        return (
+            self.jobs.is_idle
+            and self.presenter.is_settled
+            and self.quality.is_settled
+            and self.maps.is_settled
+        )
 
     # The end
 
@@ -338,6 +353,7 @@ class MainWindow(QMainWindow):
         self._settings.setValue("layout", self.saveState())
         self.jobs.shut_down()
         self.quality.shut_down()
+        self.maps.shut_down()
         self.presenter.shut_down()
         self.table_presenter.shut_down()
         self._bone_edits.shut_down()

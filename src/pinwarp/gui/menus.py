@@ -20,11 +20,12 @@ MENUS = {
         "delete_side delete_landmark - swap_sides @mirror - select_none filter"
     ),
     "&Place": (
-        "accept_ghost next_incomplete - load_template guide set_pattern - snap set_nudge lock"
+        "accept_ghost place_suggested next_incomplete - load_template guide set_pattern - "
+        "snap set_nudge lock"
     ),
     "&Warp": "@components",
     "&View": (
-        "overlay - fit focus @sides @cameras - section wireframe - "
+        "overlay @maps - fit focus @sides @cameras - section wireframe - "
         "markers_larger markers_smaller - show_coordinates -"
     ),
     "&Help": "shortcuts - about_penalty about",
@@ -42,6 +43,11 @@ SUBMENUS = {
         "view_front view_back - view_left view_right - view_top view_bottom",
     ),
     "@cameras": ("Ca&meras", "link_linked link_rotation link_free - link_next"),
+    "@maps": (
+        "Ma&ps",
+        "map_none - map_distance map_volume map_largest_stretch map_smallest_stretch "
+        "map_uncertainty - map_next",
+    ),
     "@export": (
         "E&xport Landmarks",
         "export_source export_destination export_pairs export_passengers",
