@@ -12,13 +12,12 @@ from qtpy.QtCore import QPointF, Signal
 from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QWidget
 from vtkmodules.vtkCommonCore import vtkLookupTable
-from vtkmodules.vtkRenderingCore import vtkMapper
 
 from pinwarp.core.landmarks import Side
 from pinwarp.gui import theme
 from pinwarp.gui.camera_pose import Matrix, Pose, best_frame, fitted
-from pinwarp.gui.drawn_folds import DrawnFolds
-from pinwarp.gui.drawn_mesh import DrawnMesh, OverlayWarp
+from pinwarp.gui.drawn_folds import DrawnFolds, FoldedSurface
+from pinwarp.gui.drawn_mesh import WHOLE_DEPTH, DrawnMesh, OverlayWarp
 from pinwarp.gui.fast_view import FastView
 from pinwarp.gui.legend import Legend, LegendContent
 from pinwarp.gui.marker_layer import MarkerLayer
@@ -33,9 +32,9 @@ _OVERLAY = {"specular": 0.2, "specular_power": 20}
 _LIGHTS = (((-0.5, 0.7, 1.0), 0.85), ((0.9, 0.1, 0.7), 0.42), ((0.0, 0.8, -1.0), 0.25))
 # A frame slower than this is replaced by a stand-in's while something moves.
 SLOW_FRAME = 0.040
-# How far in the picture's depth the bone steps back behind an overlay that shows a map: else it
-# would hide the half of the map that lies inside it.
-BEHIND_MAP = 20_000.0
+# Where an overlay that shows a map and the bone stand in the picture's depth: else the bone would
+# hide the half of the map that lies inside it.
+MAP_DEPTH, DEPTH_BEHIND_MAP = (0.0, 0.5), (0.5, 1.0)
 
 
 class Canvas(FastView):
@@ -59,8 +58,6 @@ class Canvas(FastView):
         self._overlay = DrawnMesh(self, "overlay", **warped)
         self._coarse_overlay = DrawnMesh(self, "overlay stand-in", **warped)
         self._folds = DrawnFolds(self)
-        # VTK heeds a depth offset only with this switch, which there is once for all views.
-        vtkMapper.SetResolveCoincidentTopologyToPolygonOffset()
         self._full_frame_seconds = 0.0
         self._warping = self._orbiting = False
         self.set_background(theme.BACKGROUND_BOTTOM, top=theme.BACKGROUND_TOP)
@@ -155,7 +152,7 @@ class Canvas(FastView):
             # Labels give way to it.
             self.layer.update()
 
-    def show_folds(self, folded: pv.PolyData | None) -> None:
+    def show_folds(self, folded: FoldedSurface | None) -> None:
         """Show where the warp turns the surface inside out."""
         self._folds.show(folded)
         self._folds.set_clip(self._section.plane if self._section is not None else None)
@@ -237,7 +234,10 @@ class Canvas(FastView):
         self._folds.set_visible(overlay_visible)
         shows_map = overlay_visible and self._overlay.is_coloured
         for drawn in (self._full, self._coarse):
-            drawn.set_depth(BEHIND_MAP if shows_map else 0.0)
+            drawn.set_depth(DEPTH_BEHIND_MAP if shows_map else WHOLE_DEPTH)
+        front = MAP_DEPTH if shows_map else WHOLE_DEPTH
+        for over in (self._overlay, self._coarse_overlay, self._folds):
+            over.set_depth(front)
         self.update()
 
     def paintGL(self) -> None:

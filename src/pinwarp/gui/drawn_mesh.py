@@ -14,6 +14,11 @@ from vtkmodules.vtkCommonDataModel import vtkPlane
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui.surface import triangles
 
+# Share of the picture's depth, from the nearest (0) to the furthest (1).
+Depth = tuple[float, float]
+WHOLE_DEPTH: Depth = (0.0, 1.0)
+_DEPTH_TAG = "//VTK::Depth::Impl"
+
 # The array of point data that a map's levels stand in.
 _LEVELS = "map"
 # Colours are read off a map: little of the light may change them.
@@ -53,6 +58,7 @@ class DrawnMesh:
         self._clip: vtkPlane | None = None
         self._culling = "none"
         self._plain: dict[str, float] = {}
+        self._depth = WHOLE_DEPTH
         self.is_coloured = False
         self.polydata: pv.PolyData | None = None
         self.actor: pv.Actor | None = None
@@ -79,6 +85,7 @@ class DrawnMesh:
         self._culling = look.get("culling", "none")
         self._plain = {key: getattr(self.actor.prop, key) for key in _READABLE}
         self.is_coloured = False
+        self._depth = WHOLE_DEPTH
         self.set_clip(self._clip)
 
     def write(
@@ -127,10 +134,22 @@ class DrawnMesh:
         # The colour is looked up for each pixel: between vertices no colour comes out of nowhere.
         mapper.SetInterpolateScalarsBeforeMapping(True)
 
-    def set_depth(self, offset: float) -> None:
-        """Draw it as if it lay deeper in the picture (see :data:`fast_view.BEHIND_ALL`)."""
-        if self.actor is not None:
-            self.actor.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(0, offset)
+    def set_depth(self, depth: Depth) -> None:
+        """Squeeze its depth in the picture into a share of it, before or behind other meshes."""
+        if self.actor is None or depth == self._depth:
+            return
+        self._depth = depth
+        shader = self.actor.GetShaderProperty()
+        shader.ClearAllFragmentShaderReplacements()
+        if depth != WHOLE_DEPTH:
+            nearest, furthest = depth
+            # Only where it is needed: who writes depths costs the graphics their early exit.
+            shader.AddFragmentShaderReplacement(
+                _DEPTH_TAG,
+                True,
+                f"{_DEPTH_TAG}\ngl_FragDepth = mix({nearest:f}, {furthest:f}, gl_FragCoord.z);\n",
+                False,
+            )
 
     def set_clip(self, plane: vtkPlane | None) -> None:
         """Draw only what lies on the positive side of a plane, or everything."""

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-import pyvista as pv
 from numpy.typing import NDArray
 from psygnal import Signal
 from qtpy.QtCore import QObject
@@ -20,12 +19,12 @@ from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui import theme
 from pinwarp.gui.colour_scale import ColourScale
+from pinwarp.gui.drawn_folds import FoldedSurface
 from pinwarp.gui.jobs import LatestWins
 from pinwarp.gui.legend import LegendContent
 from pinwarp.gui.map_panel import MapPanel
 from pinwarp.gui.map_words import TITLES, note_of
 from pinwarp.gui.presenter import Presenter
-from pinwarp.gui.surface import triangles
 from pinwarp.gui.viewport import Viewport
 from pinwarp.session.editor import Editor, ViewState
 from pinwarp.session.maps import MapKind, Range, Suggestion
@@ -54,7 +53,7 @@ class _Drawable:
     request: _Request
     survey: Survey
     levels: tuple[NDArray[np.float32] | None, NDArray[np.float32] | None]
-    folded: pv.PolyData | None
+    folded: FoldedSurface | None
 
 
 class MapPresenter(QObject):
@@ -273,7 +272,7 @@ class MapPresenter(QObject):
                 _, rows = KDTree(mesh.vertices).query(stand_in.vertices)
                 self._nearest[stand_in] = np.asarray(rows)
             coarse = levels[self._nearest[stand_in]]
-        return _Drawable(request, survey, (levels, coarse), _folded_triangles(survey))
+        return _Drawable(request, survey, (levels, coarse), _folded_surface(survey))
 
     def _on_survey(self, drawable: _Drawable) -> None:
         current = self._request()
@@ -366,15 +365,11 @@ class MapPresenter(QObject):
         self.fold_button.setText(text)
 
 
-def _folded_triangles(survey: Survey) -> pv.PolyData | None:
-    """Return the triangles of the warped source that touch a fold."""
+def _folded_surface(survey: Survey) -> FoldedSurface | None:
     result, folds = survey.result, survey.folds
     if folds is None or not folds.count or result.inputs.mesh is None or result.vertices is None:
         return None
-    faces = result.inputs.mesh.faces
-    faces = faces[folds.is_folded[faces].any(axis=1)]
-    rows, corners = np.unique(faces, return_inverse=True)
-    return triangles(result.vertices[rows], corners.reshape(-1, 3))
+    return FoldedSurface.of(folds, result.inputs.mesh.faces, result.vertices)
 
 
 def _fold_button() -> QPushButton:
