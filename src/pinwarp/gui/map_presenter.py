@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import weakref
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -209,12 +210,13 @@ class MapPresenter(QObject):
 
     def _landmark_at(self, suggestion: Suggestion) -> str | None:
         """Return the landmark that stands where the next one should."""
-        mesh = self._editor.session.mesh(Side.SOURCE)
-        if mesh is None:
+        surface = self._viewports[Side.SOURCE].surface
+        if surface is None:
             return None
+        reach = THERE * surface.diagonal
         for landmark in self._editor.session.landmarks:
-            apart = np.subtract(landmark.source or np.inf, suggestion.position)
-            if np.linalg.norm(apart) < THERE * mesh.diagonal:
+            place = landmark.source
+            if place is not None and math.dist(place, suggestion.position) < reach:
                 return landmark.name
         return None
 
