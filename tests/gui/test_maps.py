@@ -311,7 +311,7 @@ def folded(sample):
 
 
 def test_a_fold_is_told_in_the_status_bar_and_a_click_selects_the_landmarks(folded):
-    button = folded.window.maps.fold_button
+    button = folded.window.maps.fold_note
     assert button.isVisible()
     count = folded.window.maps.survey.folds.count
     assert button.text().startswith(f"{count:,} vertices fold near ")
@@ -330,7 +330,7 @@ def test_a_fold_is_told_in_the_status_bar_and_a_click_selects_the_landmarks(fold
 
 def test_a_fold_shines_through_the_bone_with_and_without_a_map_and_goes_with_its_cause(folded):
     folds = there(folded)._folds
-    QTest.mouseClick(folded.window.maps.fold_button, Qt.MouseButton.LeftButton)
+    QTest.mouseClick(folded.window.maps.fold_note, Qt.MouseButton.LeftButton)
     folded.settle()
 
     def loud():
@@ -358,7 +358,7 @@ def test_a_renamed_landmark_is_renamed_in_the_status_bar(folded):
     name = sorted(folded.names)[0]
     folded.editor.commit(edits.rename(folded.session, name, "apex"), "Rename")
     folded.settle()
-    assert "apex" in folded.window.maps.fold_button.text()
+    assert "apex" in folded.window.maps.fold_note.text()
 
 
 def test_no_actor_is_left_over_when_maps_and_folds_come_and_go(folded):
@@ -438,7 +438,11 @@ def test_the_panel_has_a_button_for_the_suggested_place(sample):
     assert button.isVisible()
     count = len(sample.session.landmarks)
     QTest.mouseClick(button, Qt.MouseButton.LeftButton)
+    sample.settle()
     assert len(sample.session.landmarks) == count + 1
+    assert not button.isEnabled()
+    name = sample.session.landmarks[-1].name
+    assert sample.window.map_panel.advice.text().startswith(f"{name} stands where it helps most")
 
 
 # Large meshes

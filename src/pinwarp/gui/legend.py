@@ -169,7 +169,9 @@ class Legend(QWidget):
         rows = 256
         levels = [high - (high - low) * (row + 0.5) / rows for row in range(rows)]
         colours = content.scale.colours(levels)
-        image = QImage(colours.tobytes(), 1, rows, 3, QImage.Format.Format_RGB888)
+        # Kept while it is painted: the image only points at it.
+        pixels = colours.tobytes()
+        image = QImage(pixels, 1, rows, 3, QImage.Format.Format_RGB888)
         painter.drawImage(bar, image)
         outline = [bar.topLeft(), bar.topRight(), bar.bottomRight(), bar.bottomLeft()]
         below, above = content.clipped

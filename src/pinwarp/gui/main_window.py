@@ -81,7 +81,7 @@ class MainWindow(QMainWindow):
         self.maps = MapPresenter(
             self.editor, self.presenter, self.viewports, self.map_panel, self.actions_by_key, self
         )
-        self.statusBar().addPermanentWidget(self.maps.fold_button)
+        self.statusBar().addPermanentWidget(self.maps.fold_note)
         self._bone_edits = BoneEdits(self.editor, self.actions_by_key, self)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
         self.view_controls.add_to(self.findChild(QToolBar, "tools"))

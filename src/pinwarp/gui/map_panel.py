@@ -121,7 +121,6 @@ class MapPanel(QWidget):
         scroll = QScrollArea()
         scroll.setWidgetResizable(True)
         scroll.setFrameShape(QFrame.Shape.NoFrame)
-        scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         scroll.setWidget(inner)
         outer = QVBoxLayout(self)
         outer.setContentsMargins(0, 0, 0, 0)
@@ -130,7 +129,12 @@ class MapPanel(QWidget):
     # What is shown
 
     def show_survey(
-        self, survey: Survey | None, view: ViewState, unit: str, scale: ColourScale | None
+        self,
+        survey: Survey | None,
+        view: ViewState,
+        unit: str,
+        scale: ColourScale | None,
+        taken: str | None = None,
     ) -> None:
         """Show a map's figures.
 
@@ -144,6 +148,8 @@ class MapPanel(QWidget):
             Of the meshes.
         scale
             The colours that the map is drawn in; None where there is no map.
+        taken
+            The landmark that stands already where the next one helps most.
         """
         self.choice.setCurrentIndex(list(MapKind).index(view.map) + 1 if view.map else 0)
         self.meaning.setText(MEANINGS[view.map])
@@ -172,10 +178,14 @@ class MapPanel(QWidget):
             f'<span style="color:{theme.WARNING_COLOUR}">━</span> destination → source'
         )
         if suggestion is not None:
+            known = f"the warp is known to ± {figure(suggestion.deviation, unit)} there."
             self.advice.setText(
-                "The next landmark helps most where the star stands on the source: "
-                f"the warp is known to ± {figure(suggestion.deviation, unit)} there."
+                f"The next landmark helps most where the star stands on the source: {known}"
+                if taken is None
+                else f"{taken} stands where it helps most: {known} Place it on the destination "
+                "too: Space accepts its ghost."
             )
+            self.place_next.setEnabled(taken is None)
         self._show_range(found, view, unit, scale)
 
     def _show_range(

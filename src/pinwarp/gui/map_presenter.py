@@ -13,14 +13,13 @@ from numpy.typing import NDArray
 from psygnal import Signal
 from qtpy.QtCore import QObject
 from qtpy.QtGui import QAction, QActionGroup
-from qtpy.QtWidgets import QPushButton
 from scipy.spatial import KDTree
 
 from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
-from pinwarp.gui import theme
 from pinwarp.gui.colour_scale import ColourScale
 from pinwarp.gui.drawn_folds import FoldedSurface
+from pinwarp.gui.fold_note import FoldNote
 from pinwarp.gui.jobs import LatestWins
 from pinwarp.gui.legend import LegendContent
 from pinwarp.gui.map_panel import MapPanel
@@ -36,7 +35,6 @@ from pinwarp.session.survey import Survey, Surveyor
 MAP_ACTIONS = {kind: f"map_{kind.name.lower() if kind else 'none'}" for kind in (None, *MapKind)}
 # Nearer to a suggested place than this share of the bone, a landmark counts as placed there.
 THERE = 1e-3
-MOST_NAMES = 3
 
 
 @dataclass(frozen=True)
@@ -107,7 +105,7 @@ class MapPresenter(QObject):
         self._drawable: _Drawable | None = None
         self._asked: _Request | None = None
         self._drawn: tuple[_Drawable | None, ColourScale | None] = (None, None)
-        self.fold_button = _fold_button()
+        self.fold_note = FoldNote(editor, actions["focus"])
         self._connect()
         self._on_view()
 
@@ -125,7 +123,6 @@ class MapPresenter(QObject):
         panel.map_requested.connect(self.show_map)
         panel.range_requested.connect(self._fix_range)
         panel.relative_requested.connect(lambda on: editor.look(map_relative=on))
-        self.fold_button.clicked.connect(lambda _checked=False: self._select_folded())
         self._presenter.result_changed.connect(self._on_result)
         editor.view_changed.connect(self._on_view)
         editor.session_changed.connect(self._on_session)
@@ -187,7 +184,7 @@ class MapPresenter(QObject):
                 "landmark helps most."
             )
             return
-        there = self._landmark_at(suggestion)
+        there = self._taken_by()
         if there is not None:
             self.refused.emit(
                 f"{there} is there already: place it on the destination too (Space accepts its "
@@ -208,10 +205,10 @@ class MapPresenter(QObject):
             return None
         return survey.map.suggestion
 
-    def _landmark_at(self, suggestion: Suggestion) -> str | None:
-        """Return the landmark that stands where the next one should."""
-        surface = self._viewports[Side.SOURCE].surface
-        if surface is None:
+    def _taken_by(self) -> str | None:
+        """Return the landmark that stands where the next one helps most."""
+        suggestion, surface = self._suggestion(), self._viewports[Side.SOURCE].surface
+        if suggestion is None or surface is None:
             return None
         reach = THERE * surface.diagonal
         for landmark in self._editor.session.landmarks:
@@ -219,12 +216,6 @@ class MapPresenter(QObject):
             if place is not None and math.dist(place, suggestion.position) < reach:
                 return landmark.name
         return None
-
-    def _select_folded(self) -> None:
-        names = self._folding_names()
-        if names:
-            self._editor.select(*names, side=Side.DESTINATION)
-            self._actions["focus"].trigger()
 
     # From the warp to the survey
 
@@ -306,8 +297,10 @@ class MapPresenter(QObject):
     def _show(self) -> None:
         """Show the last survey as the view state wants it."""
         session, drawable, scale = self._editor.session, self._drawable, self._scale()
-        self._panel.show_survey(self.survey, self._editor.view, session.unit, scale)
-        self._show_fold_button()
+        self._panel.show_survey(
+            self.survey, self._editor.view, session.unit, scale, self._taken_by()
+        )
+        self.fold_note.show_survey(self.survey)
         fresh = drawable is not None and drawable.request.result is self._resting
         self._draw(drawable if fresh else None)
 
@@ -324,9 +317,8 @@ class MapPresenter(QObject):
                 there.show_folds(drawable.folded if drawable is not None else None)
             self._drawn = (drawable, scale)
         there.show_legend(self._legend(scale) if self._editor.view.overlay else None)
-        suggestion = self._suggestion()
-        taken = suggestion is not None and self._landmark_at(suggestion) is not None
-        self._viewports[Side.SOURCE].layer.show_suggestion(None if taken else suggestion)
+        marked = self._suggestion() if self._taken_by() is None else None
+        self._viewports[Side.SOURCE].layer.show_suggestion(marked)
 
     def _legend(self, scale: ColourScale | None) -> LegendContent | None:
         survey, view = self.survey, self._editor.view
@@ -342,44 +334,9 @@ class MapPresenter(QObject):
             fixed=view.map_range is not None,
         )
 
-    def _folding_names(self) -> tuple[str, ...]:
-        """Return the landmarks that make the warp fold, those of the largest patch first."""
-        survey, pairs = self.survey, self._editor.session.pairs
-        if survey is None or survey.folds is None:
-            return ()
-        if tuple(pair.source for pair in pairs) != survey.result.inputs.source:
-            return ()
-        rows = dict.fromkeys(row for patch in survey.folds.patches for row in patch.landmarks)
-        return tuple(pairs[row].name for row in rows)
-
-    def _show_fold_button(self) -> None:
-        survey = self.survey
-        count = survey.folds.count if survey is not None and survey.folds is not None else 0
-        names = self._folding_names()
-        self.fold_button.setVisible(count > 0)
-        if not count:
-            return
-        text = "1 vertex folds" if count == 1 else f"{count:,} vertices fold"
-        if names:
-            more = len(names) - MOST_NAMES
-            text += f" near {', '.join(names[:MOST_NAMES])}"
-            text += f" and {more} more" if more > 0 else ""
-        self.fold_button.setText(text)
-
 
 def _folded_surface(survey: Survey) -> FoldedSurface | None:
     result, folds = survey.result, survey.folds
     if folds is None or not folds.count or result.inputs.mesh is None or result.vertices is None:
         return None
     return FoldedSurface.of(folds, result.inputs.mesh.faces, result.vertices)
-
-
-def _fold_button() -> QPushButton:
-    button = QPushButton()
-    button.setFlat(True)
-    button.setStyleSheet(f"color: {theme.FOLD_COLOUR};")
-    button.setToolTip(
-        "The warp turns the surface inside out there: click to select these landmarks"
-    )
-    button.hide()
-    return button

@@ -30,8 +30,8 @@ MEANINGS = {
         "least: below 1 it is squeezed."
     ),
     MapKind.UNCERTAINTY: (
-        "Standard deviation of one coordinate of the warp, told from how well the pairs foretell "
-        "one another: largest where landmarks are far away."
+        "Standard deviation of one coordinate of the full warp, told from how well the pairs "
+        "foretell one another: largest where landmarks are far away."
     ),
 }
 

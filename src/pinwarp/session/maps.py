@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
@@ -128,7 +128,7 @@ class SurfaceMap:
     histograms: tuple[Histogram, ...]
     comparison: SurfaceComparison | None = None
     suggestion: Suggestion | None = None
-    overall: float = field(default=1.0)
+    overall: float = 1.0
 
     @property
     def levels(self) -> NDArray[np.float32]:
