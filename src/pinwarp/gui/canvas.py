@@ -16,8 +16,10 @@ from vtkmodules.vtkCommonCore import vtkLookupTable
 from pinwarp.core.landmarks import Side
 from pinwarp.gui import theme
 from pinwarp.gui.camera_pose import Matrix, Pose, best_frame, fitted
+from pinwarp.gui.depth import WHOLE_DEPTH
 from pinwarp.gui.drawn_folds import DrawnFolds, FoldedSurface
-from pinwarp.gui.drawn_mesh import WHOLE_DEPTH, DrawnMesh, OverlayWarp
+from pinwarp.gui.drawn_lines import DrawnLines
+from pinwarp.gui.drawn_mesh import DrawnMesh, OverlayWarp
 from pinwarp.gui.fast_view import FastView
 from pinwarp.gui.legend import Legend, LegendContent
 from pinwarp.gui.marker_layer import MarkerLayer
@@ -58,6 +60,7 @@ class Canvas(FastView):
         self._overlay = DrawnMesh(self, "overlay", **warped)
         self._coarse_overlay = DrawnMesh(self, "overlay stand-in", **warped)
         self._folds = DrawnFolds(self)
+        self._grid = DrawnLines(self, "grid", color=theme.INK, opacity=0.4)
         self._full_frame_seconds = 0.0
         self._warping = self._orbiting = False
         self.set_background(theme.BACKGROUND_BOTTOM, top=theme.BACKGROUND_TOP)
@@ -106,7 +109,7 @@ class Canvas(FastView):
         self.layer.hint, self.layer.unit = scene.hint, scene.unit
         self.layer.radius = scene.marker_radius
         self.layer.set_markers(scene.markers)
-        self.layer.ghost = scene.ghost
+        self.layer.ghost, self.layer.arrows = scene.ghost, scene.arrows
         if before is None or scene.wireframe != before.wireframe:
             for drawn in (self._full, self._coarse):
                 drawn.set_wireframe(scene.wireframe)
@@ -157,6 +160,20 @@ class Canvas(FastView):
         self._folds.show(folded)
         self._folds.set_clip(self._section.plane if self._section is not None else None)
         self._choose_detail()
+
+    def show_grid(self, lines: NDArray | None) -> None:
+        """Show (lines, samples, 3) positions as lines, or none; the camera stays where it is."""
+        if lines is None:
+            self._grid.remove()
+        else:
+            self._grid.write(lines)
+        self.renderer.ResetCameraClippingRange()
+        self._choose_detail()
+
+    @property
+    def grid_lines(self) -> NDArray | None:
+        """The (lines, samples, 3) positions of the grid as drawn, None where there is none."""
+        return self._grid.lines
 
     def _show_section(self, share: float | None) -> None:
         """Move the cross-section; when it is switched on it faces the camera."""
@@ -236,7 +253,7 @@ class Canvas(FastView):
         for drawn in (self._full, self._coarse):
             drawn.set_depth(DEPTH_BEHIND_MAP if shows_map else WHOLE_DEPTH)
         front = MAP_DEPTH if shows_map else WHOLE_DEPTH
-        for over in (self._overlay, self._coarse_overlay, self._folds):
+        for over in (self._overlay, self._coarse_overlay, self._folds, self._grid):
             over.set_depth(front)
         self.update()
 

@@ -12,7 +12,8 @@ from vtkmodules.vtkCommonDataModel import vtkPlane
 
 from pinwarp.core.folds import Folds
 from pinwarp.gui import theme
-from pinwarp.gui.drawn_mesh import Depth, DrawnMesh
+from pinwarp.gui.depth import Depth
+from pinwarp.gui.drawn_mesh import DrawnMesh
 from pinwarp.gui.surface import triangles
 
 # In the picture's depth: a little before the surface that they are a part of, and before all

@@ -12,12 +12,8 @@ from vtkmodules.vtkCommonCore import vtkLookupTable
 from vtkmodules.vtkCommonDataModel import vtkPlane
 
 from pinwarp.core.mesh import Mesh
+from pinwarp.gui.depth import WHOLE_DEPTH, Depth, squeeze
 from pinwarp.gui.surface import triangles
-
-# Share of the picture's depth, from the nearest (0) to the furthest (1).
-Depth = tuple[float, float]
-WHOLE_DEPTH: Depth = (0.0, 1.0)
-_DEPTH_TAG = "//VTK::Depth::Impl"
 
 # The array of point data that a map's levels stand in.
 _LEVELS = "map"
@@ -135,21 +131,10 @@ class DrawnMesh:
         mapper.SetInterpolateScalarsBeforeMapping(True)
 
     def set_depth(self, depth: Depth) -> None:
-        """Squeeze its depth in the picture into a share of it, before or behind other meshes."""
-        if self.actor is None or depth == self._depth:
-            return
-        self._depth = depth
-        shader = self.actor.GetShaderProperty()
-        shader.ClearAllFragmentShaderReplacements()
-        if depth != WHOLE_DEPTH:
-            nearest, furthest = depth
-            # Only where it is needed: who writes depths costs the graphics their early exit.
-            shader.AddFragmentShaderReplacement(
-                _DEPTH_TAG,
-                True,
-                f"{_DEPTH_TAG}\ngl_FragDepth = mix({nearest:f}, {furthest:f}, gl_FragCoord.z);\n",
-                False,
-            )
+        """Draw it in a share of the picture's depth, before or behind other things."""
+        if self.actor is not None and depth != self._depth:
+            self._depth = depth
+            squeeze(self.actor, depth)
 
     def set_clip(self, plane: vtkPlane | None) -> None:
         """Draw only what lies on the positive side of a plane, or everything."""

@@ -8,6 +8,7 @@ from qtpy.QtWidgets import QPushButton
 from pinwarp.core.landmarks import Side
 from pinwarp.gui import theme
 from pinwarp.session.editor import Editor
+from pinwarp.session.pair_names import pair_names
 from pinwarp.session.survey import Survey
 
 MOST_NAMES = 3
@@ -54,12 +55,11 @@ class FoldNote(QPushButton):
 
     def _names(self) -> tuple[str, ...]:
         """Return the landmarks responsible, those of the largest patch first."""
-        survey, pairs = self._survey, self._editor.session.pairs
-        # The pairs may have moved on since.
-        if survey is None or survey.result.inputs.source != tuple(pair.source for pair in pairs):
+        if self._survey is None:
             return ()
-        rows = dict.fromkeys(row for finding in survey.findings for row in finding.rows)
-        return tuple(pairs[row].name for row in rows)
+        names = pair_names(self._survey.result.inputs, self._editor.session)
+        rows = (row for finding in self._survey.findings for row in finding.rows)
+        return tuple(dict.fromkeys(name for row in rows if (name := names[row]) is not None))
 
     def _select(self) -> None:
         names = self._names()

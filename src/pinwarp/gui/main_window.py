@@ -16,6 +16,7 @@ from qtpy.QtWidgets import (
     QSizePolicy,
     QSlider,
     QSplitter,
+    QTabWidget,
     QToolBar,
     QVBoxLayout,
     QWidget,
@@ -28,9 +29,12 @@ from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Documents
 from pinwarp.gui.exports import Exports
 from pinwarp.gui.file_tasks import FileTasks
+from pinwarp.gui.findings_panel import FindingsPanel
+from pinwarp.gui.findings_presenter import FindingsPresenter
+from pinwarp.gui.grid_presenter import GridPresenter
 from pinwarp.gui.guidance import Guidance
 from pinwarp.gui.guide_bar import GuideBar
-from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY
+from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY, ABOUT_QUALITY
 from pinwarp.gui.jobs import SlowJob
 from pinwarp.gui.landmark_panel import LandmarkPanel
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
@@ -41,10 +45,12 @@ from pinwarp.gui.penalty_panel import PenaltyPanel
 from pinwarp.gui.presenter import Presenter
 from pinwarp.gui.quality_presenter import QualityPresenter
 from pinwarp.gui.recent_files import RecentFiles
+from pinwarp.gui.report_export import ReportExport
 from pinwarp.gui.shortcut_overlay import ShortcutOverlay
 from pinwarp.gui.table_presenter import TablePresenter
 from pinwarp.gui.view_controls import ViewControls
 from pinwarp.gui.viewport import Viewport
+from pinwarp.gui.warp_panel import WarpPanel
 from pinwarp.gui.warp_presenter import WarpPresenter
 from pinwarp.io.samples import sample_session
 from pinwarp.session.editor import Editor
@@ -71,8 +77,10 @@ class MainWindow(QMainWindow):
         self.panel = PenaltyPanel()
         self.jobs = SlowJob(self)
         self.actions_by_key = make_actions(self)
-        self.landmarks = LandmarkPanel(self.table, self.actions_by_key)
+        self.warp_panel = WarpPanel(self.actions_by_key)
         self.map_panel = MapPanel(self.actions_by_key["place_suggested"])
+        self.findings = FindingsPanel()
+        self.landmarks = LandmarkPanel(self.table, self.findings, self.actions_by_key)
         self._dialogs = dialogs or Dialogs(self)
         self._recent = RecentFiles(settings)
         self._lay_out()
@@ -82,16 +90,34 @@ class MainWindow(QMainWindow):
             self.editor, self.presenter, self.viewports, self.map_panel, self.actions_by_key, self
         )
         self.statusBar().addPermanentWidget(self.maps.fold_note)
+        self.quality.quality_changed.connect(self.presenter.show_quality)
+        self.findings_presenter = FindingsPresenter(
+            self.editor,
+            self.quality,
+            self.model,
+            self.landmarks,
+            self.actions_by_key,
+            self.presenter.requests,
+            self._say,
+        )
         self._bone_edits = BoneEdits(self.editor, self.actions_by_key, self)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
         self.view_controls.add_to(self.findChild(QToolBar, "tools"))
-        self.warp_presenter = WarpPresenter(self.editor, self.actions_by_key, self)
+        self.warp_presenter = WarpPresenter(
+            self.editor, self.warp_panel, self.quality, self.actions_by_key, self._say, self
+        )
+        self.grid = GridPresenter(
+            self.editor, self.presenter, self.viewports, self.actions_by_key, self
+        )
         self.statusBar().addPermanentWidget(self.warp_presenter.note)
         self._tasks = FileTasks(self.editor, self.jobs, self._dialogs)
         self.documents = Documents(
             self.editor, self._tasks, self._recent, self.presenter.keep_surface
         )
         self.exports = Exports(self.editor, self._tasks)
+        self._report_export = ReportExport(
+            self.editor, self._tasks, self.viewports, lambda: self.documents.name
+        )
         self.guidance = Guidance(
             self.editor, self.presenter, self.documents, self._dialogs, self.guide_bar, self.hint
         )
@@ -128,7 +154,10 @@ class MainWindow(QMainWindow):
         self.setCentralWidget(centre)
         right = Qt.DockWidgetArea.RightDockWidgetArea
         landmarks = self._add_dock("landmarks", "Landmarks", self.landmarks, right)
-        self.tabifyDockWidget(landmarks, self._add_dock("map", "Map", self.map_panel, right))
+        warp = self._add_dock("warp", "Warp", self.warp_panel, right)
+        self.tabifyDockWidget(landmarks, warp)
+        self.tabifyDockWidget(warp, self._add_dock("map", "Map", self.map_panel, right))
+        self.setTabPosition(right, QTabWidget.TabPosition.North)
         landmarks.raise_()
         penalty = self._add_dock(
             "penalty", "Warping penalty", self.panel, Qt.DockWidgetArea.BottomDockWidgetArea
@@ -209,6 +238,7 @@ class MainWindow(QMainWindow):
             "export_destination": lambda: self.exports.export_landmarks(Side.DESTINATION),
             "export_pairs": lambda: self.exports.export_landmarks(None),
             "export_mesh": self.exports.ask_and_export_mesh,
+            "export_report": self._report_export.ask_and_export,
             "quit": self.close,
             "undo": editor.undo,
             "redo": editor.redo,
@@ -224,6 +254,7 @@ class MainWindow(QMainWindow):
             "select_none": editor.select,
             "about": lambda: self._dialogs.tell("About pinwarp", ABOUT),
             "about_penalty": lambda: self._dialogs.tell("About the warping penalty", ABOUT_PENALTY),
+            "about_quality": lambda: self._dialogs.tell("About the quality figures", ABOUT_QUALITY),
         }
         for key, function in does.items():
             # Qt's "checked" argument is of no use to any of them.
@@ -299,6 +330,7 @@ class MainWindow(QMainWindow):
         actions["export_mesh"].setEnabled(
             session.mesh(Side.SOURCE) is not None and bool(session.pairs)
         )
+        actions["export_report"].setEnabled(bool(session.pairs))
         self.guidance.show()
 
     def _on_view(self, _changed: object = None) -> None:
@@ -329,12 +361,8 @@ class MainWindow(QMainWindow):
     @property
     def is_settled(self) -> bool:
         """Whether everything asked for is done and shown."""
-        return (
-            self.jobs.is_idle
-            and self.presenter.is_settled
-            and self.quality.is_settled
-            and self.maps.is_settled
-        )
+        parts = (self.presenter, self.quality, self.grid, self.maps)
+        return self.jobs.is_idle and all(part.is_settled for part in parts)
 
     # The end
 
@@ -352,13 +380,16 @@ class MainWindow(QMainWindow):
         self._settings.setValue("geometry", self.saveGeometry())
         self._settings.setValue("layout", self.saveState())
         self.jobs.shut_down()
+        self.grid.shut_down()
+        self.warp_presenter.shut_down()
+        self.findings_presenter.shut_down()
+        self.quality.quality_changed.disconnect(self.presenter.show_quality)
         self.quality.shut_down()
         self.maps.shut_down()
         self.presenter.shut_down()
         self.table_presenter.shut_down()
         self._bone_edits.shut_down()
         self.view_controls.shut_down()
-        self.warp_presenter.shut_down()
         for signal in (self.editor.session_changed, self.editor.selection_changed):
             signal.disconnect(self._on_session)
         self.editor.view_changed.disconnect(self._on_view)

@@ -12,23 +12,23 @@ SEPARATOR = "-"
 MENUS = {
     "&File": (
         "open_source open_destination - open_session @recent open_sample - save save_as - "
-        "@import @export export_mesh - quit"
+        "@import @export export_mesh export_report - quit"
     ),
     "&Edit": (
         "undo redo - copy paste - rename rename_many note - "
         "toggle_enabled toggle_locked toggle_role - move_up move_down - "
-        "delete_side delete_landmark - swap_sides @mirror - select_none filter"
+        "delete_side delete_landmark - swap_destinations swap_sides @mirror - select_none filter"
     ),
     "&Place": (
-        "accept_ghost place_suggested next_incomplete - load_template guide set_pattern - "
-        "snap set_nudge lock"
+        "accept_ghost place_suggested next_incomplete next_finding - "
+        "load_template guide set_pattern - snap set_nudge lock"
     ),
-    "&Warp": "@components",
+    "&Warp": "@components play_blend - copy_figures",
     "&View": (
-        "overlay @maps - fit focus @sides @cameras - section wireframe - "
+        "overlay arrows @maps @grid - fit focus @sides @cameras - section wireframe - "
         "markers_larger markers_smaller - show_coordinates -"
     ),
-    "&Help": "shortcuts - about_penalty about",
+    "&Help": "shortcuts - about_penalty about_quality about",
 }
 SUBMENUS = {
     "@recent": ("Open &Recent", ""),
@@ -37,6 +37,10 @@ SUBMENUS = {
     "@components": (
         "&Apply",
         "apply_full apply_without_pose - apply_affine apply_similarity apply_rigid",
+    ),
+    "@grid": (
+        "&Grid",
+        "grid_none grid_box - grid_plane_x grid_plane_y grid_plane_z - grid_next",
     ),
     "@sides": (
         "&Look From",
