@@ -38,6 +38,8 @@ from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY, ABOUT_QUALITY
 from pinwarp.gui.jobs import SlowJob
 from pinwarp.gui.landmark_panel import LandmarkPanel
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
+from pinwarp.gui.map_panel import MapPanel
+from pinwarp.gui.map_presenter import MapPresenter
 from pinwarp.gui.menus import fill_toolbar, make_menus, shortcut_groups
 from pinwarp.gui.penalty_panel import PenaltyPanel
 from pinwarp.gui.penalty_tuning import PenaltyTuning
@@ -81,6 +83,7 @@ class MainWindow(QMainWindow):
             [self.actions_by_key[key] for key in ("snapshot", "sweep", "clear_snapshots")]
         )
         self.warp_panel = WarpPanel(self.actions_by_key)
+        self.map_panel = MapPanel(self.actions_by_key["place_suggested"])
         self.findings = FindingsPanel()
         self.landmarks = LandmarkPanel(self.table, self.findings, self.actions_by_key)
         self._dialogs = dialogs or Dialogs(self)
@@ -88,6 +91,10 @@ class MainWindow(QMainWindow):
         self._lay_out()
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
         self.quality = QualityPresenter(self.presenter)
+        self.maps = MapPresenter(
+            self.editor, self.presenter, self.viewports, self.map_panel, self.actions_by_key, self
+        )
+        self.statusBar().addPermanentWidget(self.maps.fold_note)
         self.quality.quality_changed.connect(self.presenter.show_quality)
         self.findings_presenter = FindingsPresenter(
             self.editor,
@@ -165,6 +172,7 @@ class MainWindow(QMainWindow):
         landmarks = self._add_dock("landmarks", "Landmarks", self.landmarks, right)
         warp = self._add_dock("warp", "Warp", self.warp_panel, right)
         self.tabifyDockWidget(landmarks, warp)
+        self.tabifyDockWidget(warp, self._add_dock("map", "Map", self.map_panel, right))
         self.setTabPosition(right, QTabWidget.TabPosition.North)
         landmarks.raise_()
         penalty = QWidget()
@@ -288,7 +296,11 @@ class MainWindow(QMainWindow):
         actions["show_curve"].toggled.connect(self._fit_penalty_dock)
         self.presenter.requests.refused.connect(self._say)
         self.guidance.said.connect(self._say)
-        self.opacity.valueChanged.connect(lambda value: editor.look(opacity=value / 100))
+        self.maps.refused.connect(self._say)
+        self.maps.map_changed.connect(self._on_view)
+        self.opacity.valueChanged.connect(
+            lambda value: editor.look(**{self.maps.opacity_key: value / 100})
+        )
         for side, viewport in self.viewports.items():
             viewport.files_dropped.connect(
                 lambda paths, side=side: documents.open_files(side, paths)
@@ -359,7 +371,7 @@ class MainWindow(QMainWindow):
         self.actions_by_key["lock"].setChecked(view.locked)
         self.actions_by_key["guide"].setChecked(view.guided is not None)
         self.opacity.setEnabled(view.overlay)
-        self.opacity.setValue(round(view.opacity * 100))
+        self.opacity.setValue(round(getattr(view, self.maps.opacity_key) * 100))
         self.guidance.show()
 
     # Slow jobs
@@ -381,7 +393,7 @@ class MainWindow(QMainWindow):
     @property
     def is_settled(self) -> bool:
         """Whether everything asked for is done and shown."""
-        parts = (self.presenter, self.quality, self.tuning, self.grid)
+        parts = (self.presenter, self.quality, self.tuning, self.grid, self.maps)
         return self.jobs.is_idle and all(part.is_settled for part in parts)
 
     # The end
@@ -408,6 +420,7 @@ class MainWindow(QMainWindow):
         self.quality.quality_changed.disconnect(self.presenter.show_quality)
         self.tuning.shut_down()
         self.quality.shut_down()
+        self.maps.shut_down()
         self.presenter.shut_down()
         self.table_presenter.shut_down()
         self._bone_edits.shut_down()

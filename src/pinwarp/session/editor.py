@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
+from types import MappingProxyType
 
 from psygnal import Signal
 
 from pinwarp.core.landmarks import Side
 from pinwarp.session.edits import NAME_PATTERN
 from pinwarp.session.history import History
+from pinwarp.session.maps import MapKind, Range
 from pinwarp.session.session import Session
 
 
@@ -84,6 +87,12 @@ class ViewState:
         the source, to 1.
     curve
         Whether the figures over the penalty are drawn above its slider.
+    map, map_opacity
+        What the warped source is coloured by, if anything, and its opacity then.
+    map_relative
+        Whether the overall difference in size is taken out of maps of ratios.
+    map_ranges
+        The legends that the user fixed, so that warps and sessions can be compared by colour.
     """
 
     overlay: bool = True
@@ -101,6 +110,15 @@ class ViewState:
     grid: GridKind = GridKind.NONE
     grid_share: float = 0.5
     curve: bool = True
+    map: MapKind | None = None
+    map_opacity: float = 1.0
+    map_relative: bool = False
+    map_ranges: Mapping[MapKind, Range] = field(default_factory=lambda: MappingProxyType({}))
+
+    @property
+    def map_range(self) -> Range | None:
+        """The fixed legend of the map that is shown; None where it follows the map."""
+        return None if self.map is None else self.map_ranges.get(self.map)
 
 
 class Editor:
