@@ -25,6 +25,7 @@ SUFFIXES = (".pp",)
 HOLDS_PAIRS = False
 
 _SIGNATURE = re.compile(r"<(!DOCTYPE\s+)?PickedPoints\b")
+_DEEPEST = 20
 _AGAIN = "Save it again in MeshLab."
 
 
@@ -70,15 +71,26 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     gathering = Gathering(path)
     parser = expat.ParserCreate()
     lines = text.split("\n")
-    number = 0
+    number = depth = 0
 
     def begin(tag: str, attributes: Mapping[str, str]) -> None:
-        nonlocal number
+        nonlocal number, depth
+        depth += 1
+        if depth > _DEEPEST:
+            raise FileFormatError(
+                path,
+                f"Its elements are nested too deeply for landmarks. {_AGAIN}",
+                parser.CurrentLineNumber,
+            )
         if tag == "point":
             line = parser.CurrentLineNumber
             words = lines[line - 1] if line <= len(lines) else ""
             gathering.take(line, words, _landmark, attributes, side, f"landmark_{number}")
             number += 1
+
+    def end(_tag: str) -> None:
+        nonlocal depth
+        depth -= 1
 
     def refuse(*_arguments: object) -> None:
         raise FileFormatError(
@@ -88,6 +100,7 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
         )
 
     parser.StartElementHandler = begin
+    parser.EndElementHandler = end
     parser.EntityDeclHandler = refuse
     try:
         parser.Parse(text, True)

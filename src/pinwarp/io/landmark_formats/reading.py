@@ -15,6 +15,9 @@ from pinwarp.io.csv_text import LONGEST_CELL, lines_of
 
 P = ParamSpec("P")
 
+MOST = 20_000
+"""More landmarks, or lines, than any landmark file has: a file with more is another kind."""
+
 _LONGEST_TEXT = 120
 # Control characters, line ends of every kind, and halves of characters.
 _NOT_IN_A_LINE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]+")
@@ -112,7 +115,13 @@ class Gathering:
         *args: P.args,
         **kwargs: P.kwargs,
     ) -> None:
-        """Take the landmark that is made, or skip the line where making it raises ValueError."""
+        """Take the landmark that is made, or skip the line where making it raises ValueError.
+
+        Raises
+        ------
+        FileFormatError
+            When there are too many of them for a landmark file.
+        """
         try:
             landmark = make(*args, **kwargs)
             if landmark.name in self._found:
@@ -120,6 +129,13 @@ class Gathering:
             self._found[landmark.name] = landmark
         except ValueError as error:
             self.skip(line, text, str(error))
+        if len(self._found) + len(self._skipped) > MOST:
+            raise FileFormatError(
+                self._path,
+                f"It has more than {MOST:,} entries, which are no landmarks. "
+                "Check that it is the right file.",
+                line,
+            )
 
     def skip(self, line: int, text: str, reason: str) -> None:
         """Leave a line out, with the reason."""
