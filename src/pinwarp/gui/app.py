@@ -32,9 +32,10 @@ class PrintedMessages(Dialogs):
     def __init__(self) -> None:
         self.errors: list[str] = []
 
-    def ask_missing_mesh(self, side: str, path: Path) -> Path | None:
+    def ask_missing_mesh(self, side: str, path: Path, other: Path | None) -> Path | None:
         """Go on without the mesh, and say so."""
-        self.tell_error("Mesh not found", f"The {side} mesh {path} is not there.")
+        there = f" {other} has its name but not its content." if other is not None else ""
+        self.tell_error("Mesh not found", f"The {side} mesh {path} is not there.{there}")
         return None
 
     def tell_error(self, title: str, text: str) -> None:
@@ -94,12 +95,18 @@ def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None)
     # The spline's own threads and BLAS's would fight over the cores.
     with threadpool_limits(limits=1, user_api="blas"):
         dialogs = PrintedMessages() if screenshot is not None else None
-        window = MainWindow(user_settings() if screenshot is None else no_settings(), dialogs)
+        window = (
+            MainWindow(user_settings(), state_folder=platformdirs.user_state_path("pinwarp"))
+            if screenshot is None
+            else MainWindow(no_settings(), dialogs)
+        )
         window.show()
-        if demo:
-            window.documents.open_session(sample_session(), as_new=True)
-        else:
-            window.documents.open(opening)
+        # What was lost comes before what the command line names.
+        if not window.recovery.offer(instead_of=opening.paths):
+            if demo:
+                window.documents.open_session(sample_session(), as_new=True)
+            else:
+                window.documents.open(opening)
         if screenshot is None:
             # Loading numba takes a second of the interpreter's time: after the first picture.
             warm_up = threading.Thread(target=kernel.warm_up, daemon=True)
