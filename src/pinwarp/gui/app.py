@@ -101,12 +101,7 @@ def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None)
             else MainWindow(no_settings(), dialogs)
         )
         window.show()
-        # What was lost comes before what the command line names.
-        if not window.recovery.offer(instead_of=opening.paths):
-            if demo:
-                window.documents.open_session(sample_session(), as_new=True)
-            else:
-                window.documents.open(opening)
+        begin(window, opening, demo=demo)
         if screenshot is None:
             # Loading numba takes a second of the interpreter's time: after the first picture.
             warm_up = threading.Thread(target=kernel.warm_up, daemon=True)
@@ -117,6 +112,16 @@ def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None)
         window.editor.replace_all(window.editor.session, None)
         window.close()
         return 1 if failed else 0
+
+
+def begin(window: MainWindow, opening: Opening, *, demo: bool = False) -> None:
+    """Offer what was lost before; without it, open what the command line names."""
+    if window.recovery.offer(instead_of=opening.paths):
+        return
+    if demo:
+        window.documents.open_session(sample_session(), as_new=True)
+    else:
+        window.documents.open(opening)
 
 
 def save_picture(window: MainWindow, path: Path) -> bool:
