@@ -195,7 +195,7 @@ def lost_work(folder: Path, name: str, label: str | None, path: Path | None = No
 def test_the_offer_says_what_would_be_restored_and_when_it_was_made(tmp_path):
     lost = lost_work(tmp_path, "femur", "Move landmark_4")
     assert question_about(lost) == (
-        "pinwarp did not close properly on 22 November at 14:03. "
+        "pinwarp did not close properly on 22 November at 14:03.\n"
         "Restore femur (1 pair, last: Move landmark_4)?"
     )
     assert words_about(lost).splitlines()[0] == "2 landmarks on left.stl"

@@ -105,7 +105,7 @@ class Dialogs:
                 f"There is a {other.name} in {other.parent}, but its content is not the one that "
                 "the landmarks were placed on: they may not lie on its surface.\n\n" + more
             )
-            choices.insert(0, (_Missing.USE, "Use That One", _OTHER))
+            choices.insert(1, (_Missing.USE, "Use That One", _OTHER))
         answer = self._choose(
             "Mesh not found",
             f"The {side} mesh {path.name} is not where the session says.",
@@ -122,7 +122,7 @@ class Dialogs:
         """Ask what to do with a session that another window has open."""
         return self._choose(
             f"{name} is open already",
-            f"{name} is open {where}.",
+            f"{name} has been open {where}.",
             "Two windows that save to one file overwrite each other's work. A copy is a new "
             "session, to be saved under a name of its own.",
             [

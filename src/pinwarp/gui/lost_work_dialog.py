@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from datetime import datetime
 from enum import Enum, auto
 
-from qtpy.QtCore import QDateTime, QLocale, Qt
+from qtpy.QtCore import QDateTime, QLocale, QSize, Qt
 from qtpy.QtWidgets import (
     QDialog,
     QDialogButtonBox,
@@ -22,7 +22,8 @@ from qtpy.QtWidgets import (
 
 from pinwarp.session.recovery import LostWork
 
-_WIDTH = 520
+_WIDTH, _LIST_WIDTH = 520, 640
+_MOST_ROWS = 8
 
 
 class LostAnswer(Enum):
@@ -99,17 +100,28 @@ class LostWorkDialog(QDialog):
         self.restore.setDefault(True)
 
     def _fill(self) -> None:
-        self.list.setVisible(len(self._found) > 1)
+        several = len(self._found) > 1
+        self.list.setVisible(several)
         self.list.setRootIsDecorated(False)
+        self.list.setAlternatingRowColors(True)
+        self.list.setTextElideMode(Qt.TextElideMode.ElideMiddle)
         self.list.setHeaderLabels(["Session", "Changed", "Pairs", "Last"])
         header = self.list.header()
+        header.setStretchLastSection(False)
         header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
-        header.setStretchLastSection(True)
+        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        height = self.list.fontMetrics().height() + 7
         for lost in self._found:
             work = lost.work
             row = [lost.name, moment_in_words(work.edited), str(lost.pairs), work.label or ""]
-            QTreeWidgetItem(self.list, row).setTextAlignment(2, Qt.AlignmentFlag.AlignRight)
+            item = QTreeWidgetItem(self.list, row)
+            item.setSizeHint(0, QSize(0, height))
+            item.setTextAlignment(2, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self.list.setCurrentItem(self.list.topLevelItem(0))
+        rows = min(len(self._found), _MOST_ROWS)
+        self.list.setFixedHeight(header.sizeHint().height() + rows * height + 4)
+        if several:
+            self.list.setMinimumWidth(_LIST_WIDTH)
 
     def _show(self) -> None:
         self.chosen = self._found[max(self.list.indexOfTopLevelItem(self.list.currentItem()), 0)]
@@ -122,12 +134,12 @@ class LostWorkDialog(QDialog):
 
 
 def question_about(lost: LostWork) -> str:
-    """Return the question in one sentence, with what would be restored."""
+    """Return what happened and the question, with what would be restored."""
     what = f"{lost.pairs} pair{'' if lost.pairs == 1 else 's'}"
     if lost.work.label:
         what += f", last: {lost.work.label}"
     when = moment_in_words(lost.work.edited)
-    return f"pinwarp did not close properly on {when}. Restore {lost.name} ({what})?"
+    return f"pinwarp did not close properly on {when}.\nRestore {lost.name} ({what})?"
 
 
 def words_about(lost: LostWork) -> str:

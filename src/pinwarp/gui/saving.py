@@ -48,7 +48,9 @@ class Saving:
         if path is None:
             return self.save_as()
         if known is not None and hash_of(path) not in (known, None):
-            return self._overwrite(path, "was changed by another program or window since")
+            return self._overwrite(
+                path, "was changed by another program or window after it was opened here"
+            )
         return self._save_to(path)
 
     def save_as(self) -> bool:
