@@ -40,6 +40,7 @@ SPECS = (
     ActionSpec("open_sample", "Open Sample &Bones", "", "", "Two femurs to try things on"),
     ActionSpec("save", "&Save Session", "Ctrl+S", "save", "Save the session"),
     ActionSpec("save_as", "Save Session &As…", "Ctrl+Shift+S"),
+    ActionSpec("restore", "Restore &Unsaved Work…", "", "", "Of windows that ended unexpectedly"),
     ActionSpec("import_source", "Source Landmarks…", "Ctrl+Shift+1", "", "From a CSV file"),
     ActionSpec("import_destination", "Destination Landmarks…", "Ctrl+Shift+2", "", "From a CSV"),
     ActionSpec("import_pairs", "Landmark Pairs…", "", "", "From a CSV file with both sides"),

@@ -46,7 +46,10 @@ from pinwarp.gui.penalty_tuning import PenaltyTuning
 from pinwarp.gui.presenter import Presenter
 from pinwarp.gui.quality_presenter import QualityPresenter
 from pinwarp.gui.recent_files import RecentFiles
+from pinwarp.gui.recovery import Recovery
 from pinwarp.gui.report_export import ReportExport
+from pinwarp.gui.saving import Saving
+from pinwarp.gui.session_meshes import SessionMeshes
 from pinwarp.gui.shortcut_overlay import ShortcutOverlay
 from pinwarp.gui.snapshot_strip import SnapshotStrip
 from pinwarp.gui.table_presenter import TablePresenter
@@ -54,6 +57,7 @@ from pinwarp.gui.view_controls import ViewControls
 from pinwarp.gui.viewport import Viewport
 from pinwarp.gui.warp_panel import WarpPanel
 from pinwarp.gui.warp_presenter import WarpPresenter
+from pinwarp.io.file_names import session_name
 from pinwarp.io.samples import sample_session
 from pinwarp.session.editor import Editor
 
@@ -67,9 +71,16 @@ class MainWindow(QMainWindow):
         Where the layout and the recent files are remembered.
     dialogs
         Asks and tells; the real ones when None.
+    state_folder
+        Where unsaved work is kept in case the program dies; None keeps none.
     """
 
-    def __init__(self, settings: QSettings, dialogs: Dialogs | None = None) -> None:
+    def __init__(
+        self,
+        settings: QSettings,
+        dialogs: Dialogs | None = None,
+        state_folder: Path | None = None,
+    ) -> None:
         super().__init__()
         self._settings = settings
         self.editor = Editor()
@@ -127,8 +138,16 @@ class MainWindow(QMainWindow):
         )
         self.statusBar().addPermanentWidget(self.warp_presenter.note)
         self._tasks = FileTasks(self.editor, self.jobs, self._dialogs)
+        meshes = SessionMeshes(self._tasks, self.presenter.keep_surface)
+        self.saving = Saving(self.editor, self._tasks, self._recent)
+        self.recovery = Recovery(self.editor, self._tasks, self.saving, meshes, state_folder, self)
         self.documents = Documents(
-            self.editor, self._tasks, self._recent, self.presenter.keep_surface
+            self.editor,
+            self._tasks,
+            self._recent,
+            self.saving,
+            meshes,
+            self.recovery.window_with,
         )
         self.exports = Exports(self.editor, self._tasks)
         self._report_export = ReportExport(
@@ -259,8 +278,9 @@ class MainWindow(QMainWindow):
             "open_source": lambda: documents.ask_and_open_mesh(Side.SOURCE),
             "open_destination": lambda: documents.ask_and_open_mesh(Side.DESTINATION),
             "open_sample": self.open_sample,
-            "save": documents.save,
-            "save_as": documents.save_as,
+            "save": self.saving.save,
+            "save_as": self.saving.save_as,
+            "restore": self.recovery.offer_again,
             "import_source": lambda: documents.ask_and_import_landmarks(Side.SOURCE),
             "import_destination": lambda: documents.ask_and_import_landmarks(Side.DESTINATION),
             "import_pairs": lambda: documents.ask_and_import_landmarks(None),
@@ -318,7 +338,7 @@ class MainWindow(QMainWindow):
 
     def open_sample(self) -> None:
         """Open the sample bones as a new session, asking about unsaved work first."""
-        if self.documents.may_lose_changes():
+        if self.saving.may_lose_changes():
             self.documents.open_session(sample_session(), as_new=True)
 
     def _say(self, text: str) -> None:
@@ -337,14 +357,14 @@ class MainWindow(QMainWindow):
             self._recent_menu.addAction("Clear").triggered.connect(self._recent.clear)
 
     def _open_recent(self, path: Path) -> None:
-        if self.documents.may_lose_changes():
+        if self.saving.may_lose_changes():
             self.documents.open_session(path)
 
     # What changed
 
     def _on_session(self, _changed: object = None) -> None:
         editor, actions = self.editor, self.actions_by_key
-        self.setWindowTitle(f"{self.documents.name}[*] – pinwarp")
+        self.setWindowTitle(f"{session_name(self.editor.path)}[*] – pinwarp")
         self.setWindowModified(editor.is_dirty)
         for key, verb, label in (
             ("undo", "&Undo", editor.undo_label),
@@ -408,11 +428,12 @@ class MainWindow(QMainWindow):
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Ask about unsaved work, then let go of workers and graphics in the right order."""
-        if not self.documents.may_lose_changes():
+        if not self.saving.may_lose_changes():
             event.ignore()
             return
         self._settings.setValue("geometry", self.saveGeometry())
         self._settings.setValue("layout", self.saveState())
+        self.recovery.shut_down()
         self.jobs.shut_down()
         self.grid.shut_down()
         self.warp_presenter.shut_down()

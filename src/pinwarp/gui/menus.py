@@ -11,7 +11,7 @@ SEPARATOR = "-"
 # A key that begins with @ is a menu inside the menu.
 MENUS = {
     "&File": (
-        "open_source open_destination - open_session @recent open_sample - save save_as - "
+        "open_source open_destination - open_session @recent restore open_sample - save save_as - "
         "@import @export export_mesh export_report - quit"
     ),
     "&Edit": (
