@@ -54,7 +54,7 @@ def work_files(state_folder: Path) -> list[Path]:
 
 
 def wait_until_kept(user, state_folder: Path) -> None:
-    user.qtbot.waitUntil(lambda: bool(work_files(state_folder)), timeout=2000)
+    user.qtbot.waitUntil(lambda: bool(work_files(state_folder)), timeout=10_000)
 
 
 def killed(state_folder: Path, tmp_path: Path) -> Path:
@@ -98,7 +98,7 @@ def test_after_a_crash_the_unsaved_work_is_restored_as_unsaved(user, crashed, sa
 def test_restored_work_survives_a_second_crash(user, crashed, tmp_path):
     with next_start(user, crashed, LostAnswer.RESTORE) as again:
         again.qtbot.waitUntil(
-            lambda: len(list((crashed / "state" / "windows").iterdir())) == 1, timeout=2000
+            lambda: len(list((crashed / "state" / "windows").iterdir())) == 1, timeout=10_000
         )
         (work,) = work_files(crashed / "state")
         twice = killed(crashed / "state", tmp_path / "second")
@@ -163,7 +163,7 @@ def test_when_the_disk_is_full_it_is_said_once(user, monkeypatch):
     monkeypatch.setattr(journal, "_RETRY", 0.01)
     user.open_sample()
     click_a_new_landmark(user)
-    user.qtbot.waitUntil(lambda: bool(user.dialogs.errors), timeout=2000)
+    user.qtbot.waitUntil(lambda: bool(user.dialogs.errors), timeout=10_000)
     QTest.qWait(100)
     ((title, text),) = user.dialogs.errors
     assert title == "Unsaved work is not being kept"

@@ -48,7 +48,7 @@ def test_a_session_open_in_another_window_is_asked_about(user, another_user, sam
             (found := another_user.window.recovery.window_with(sample_copy)) is not None
             and found.has_unsaved_work
         ),
-        timeout=2000,
+        timeout=10_000,
     )
     another_user.trigger("open_session")
     ((name, where),) = another_user.dialogs.open_twice_questions

@@ -42,7 +42,7 @@ def keeping(editor: Editor, windows: Path, failures: list[Exception] | None = No
     assert failures is not None or told == []
 
 
-def eventually(condition: Callable[[], bool], seconds: float = 2.0) -> bool:
+def eventually(condition: Callable[[], bool], seconds: float = 10.0) -> bool:
     end = time.monotonic() + seconds
     while not condition():
         if time.monotonic() > end:
@@ -100,8 +100,9 @@ def test_the_first_change_is_written_at_once(windows: Path) -> None:
     editor = Editor()
     with keeping(editor, windows):
         time.sleep(journal.PAUSE + 0.1)
-        editor.commit(a_session(), "Open")
-        assert eventually(lambda: is_kept(editor, windows), seconds=0.4)
+        with mock.patch.object(journal, "PAUSE", 60.0):
+            editor.commit(a_session(), "Open")
+            assert eventually(lambda: is_kept(editor, windows))
 
 
 def test_a_drag_is_kept_only_once_it_has_ended(windows: Path) -> None:
