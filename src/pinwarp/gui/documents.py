@@ -20,7 +20,7 @@ from pinwarp.gui.recent_files import RecentFiles
 from pinwarp.gui.recovery import where_open
 from pinwarp.gui.saving import Saving
 from pinwarp.gui.session_meshes import SessionMeshes
-from pinwarp.io.file_names import is_backup, is_session, session_name
+from pinwarp.io.file_names import SESSION_SUFFIX, is_backup, is_session, session_name
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES, LandmarkReading, read_landmarks
 from pinwarp.io.meshes import MESH_SUFFIXES, MeshFile
 from pinwarp.io.reading import hash_of

@@ -151,7 +151,7 @@ class MainWindow(QMainWindow):
         )
         self.exports = Exports(self.editor, self._tasks)
         self._report_export = ReportExport(
-            self.editor, self._tasks, self.viewports, lambda: self.documents.name
+            self.editor, self._tasks, self.viewports, lambda: session_name(self.editor.path)
         )
         self.guidance = Guidance(
             self.editor, self.presenter, self.documents, self._dialogs, self.guide_bar, self.hint
