@@ -102,6 +102,8 @@ def test_an_affine_map_leaves_nothing_suspicious():
     assert not result.standardised.any()
     curve = penalty_curve(factorise(source), 3 * source + 50)
     assert curve.is_affine
+    assert not curve.leave_one_out.any()
+    assert not curve.residual.any()
     assert curve.suggested is None
     assert not penalty_curve(factorise(source), 3 * source**2 + 50).is_affine
 
@@ -129,7 +131,7 @@ def test_a_curve_has_the_figures_of_each_single_solve(pairs):
         residual = solve(factor, destination, penalty).evaluate(source) - destination
         alone = leave_one_out(factor, destination, penalty)
         assert curve.residual[k] == pytest.approx(rms(residual), rel=1e-8, abs=1e-11 * size)
-        assert curve.leave_one_out[k] == pytest.approx(alone.rms, rel=1e-8, abs=1e-12 * size)
+        assert curve.leave_one_out[k] == pytest.approx(alone.rms, rel=1e-8, abs=1e-11 * size)
         assert curve.flexibility[k] == pytest.approx(factor.flexibility(penalty))
 
 

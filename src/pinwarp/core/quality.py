@@ -241,6 +241,9 @@ def penalty_curve(
         errors = np.sqrt(np.mean(squares[judged] / diagonal[judged] ** 2, axis=0))
     rounding = ROUNDING * float(np.abs(np.asarray(destination)).max())
     is_affine = bool(judged.any() and errors.max() <= rounding)
+    if is_affine:
+        # What is left is rounding, and no figure.
+        errors, residual = np.zeros_like(errors), np.zeros_like(residual)
     return PenaltyCurve(
         penalties=grid,
         leave_one_out=errors,

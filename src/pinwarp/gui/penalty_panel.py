@@ -267,7 +267,8 @@ class PenaltyPanel(QWidget):
         if self._session.convention is PenaltyConvention.OPYNSIM and penalty > 0:
             return None
         left_out, residual = quality.curve.at(1.0 - share)
-        if quality.left_out is not None and quality.inputs.penalty == penalty:
+        exact = quality.inputs.penalty == penalty and not quality.curve.is_affine
+        if quality.left_out is not None and exact:
             left_out = quality.left_out.rms
         if result.inputs.is_whole and result.inputs.penalty == penalty:
             residual = tidy_residual(result) or 0.0
