@@ -45,6 +45,8 @@ penalty           0      0.001  0.0083  0.01   0.1    1      100
 ``REGULARISING``  0      0.390  2.13    2.40   6.74   10.1   10.9
 ================  =====  =====  ======  =====  =====  =====  =====
 
+(``assets/penalty_sign.svg`` in the repository draws both over five decades of the penalty.)
+
 Hence ``PenaltyConvention.REGULARISING`` is the default. It minimises
 :math:`\sum |y_i - f(u_i)|^2 + \mu \cdot` bending energy with :math:`s = 8 \pi \mu`, and equals
 scipy's ``RBFInterpolator(kernel="linear", degree=1, smoothing=s)``, Morpho (R), and

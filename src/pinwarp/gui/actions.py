@@ -48,6 +48,13 @@ SPECS = (
     ActionSpec(
         "export_mesh", "&Export Warped Mesh…", "Ctrl+E", "export", "Save the warped source mesh"
     ),
+    ActionSpec(
+        "export_report",
+        "Export &Report…",
+        "Ctrl+Shift+E",
+        "",
+        "Pictures, pairs and quality, as HTML",
+    ),
     ActionSpec("quit", "&Quit", "Ctrl+Q"),
     ActionSpec("undo", "&Undo", "Ctrl+Z", "undo"),
     ActionSpec("redo", "&Redo", "Ctrl+Shift+Z", "redo"),

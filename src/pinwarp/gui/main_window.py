@@ -39,6 +39,7 @@ from pinwarp.gui.penalty_panel import PenaltyPanel
 from pinwarp.gui.presenter import Presenter
 from pinwarp.gui.quality_presenter import QualityPresenter
 from pinwarp.gui.recent_files import RecentFiles
+from pinwarp.gui.report_export import ReportExport
 from pinwarp.gui.shortcut_overlay import ShortcutOverlay
 from pinwarp.gui.table_presenter import TablePresenter
 from pinwarp.gui.view_controls import ViewControls
@@ -85,6 +86,9 @@ class MainWindow(QMainWindow):
             self.editor, self._tasks, self._recent, self.presenter.keep_surface
         )
         self.exports = Exports(self.editor, self._tasks)
+        self._report_export = ReportExport(
+            self.editor, self._tasks, self.viewports, lambda: self.documents.name
+        )
         self.guidance = Guidance(
             self.editor, self.presenter, self.documents, self._dialogs, self.guide_bar, self.hint
         )
@@ -203,6 +207,7 @@ class MainWindow(QMainWindow):
             "export_destination": lambda: self.exports.export_landmarks(Side.DESTINATION),
             "export_pairs": lambda: self.exports.export_landmarks(None),
             "export_mesh": self.exports.ask_and_export_mesh,
+            "export_report": self._report_export.ask_and_export,
             "quit": self.close,
             "undo": editor.undo,
             "redo": editor.redo,
@@ -289,6 +294,7 @@ class MainWindow(QMainWindow):
         actions["export_mesh"].setEnabled(
             session.mesh(Side.SOURCE) is not None and bool(session.pairs)
         )
+        actions["export_report"].setEnabled(bool(session.pairs))
         self.guidance.show()
 
     def _on_view(self, _changed: object = None) -> None:

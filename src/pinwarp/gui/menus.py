@@ -12,7 +12,7 @@ SEPARATOR = "-"
 MENUS = {
     "&File": (
         "open_source open_destination - open_session @recent open_sample - save save_as - "
-        "@import @export export_mesh - quit"
+        "@import @export export_mesh export_report - quit"
     ),
     "&Edit": (
         "undo redo - copy paste - rename rename_many note - "

@@ -19,6 +19,8 @@ from pinwarp.session.session import Session
 
 Matrix = NDArray[np.float64]
 
+# Residuals below this share of the largest coordinate are 0.
+ROUNDING = 1e-9
 # Up to here the eigendecomposition is done along with the solve; above, once the hand rests.
 EAGER_MODES = 300
 
@@ -201,13 +203,16 @@ class WarpSolver:
         except PinwarpError as error:
             return WarpResult(inputs, problem=str(error))
         source, passengers = np.array(inputs.source), np.array(inputs.passengers).reshape(-1, 3)
-        misses = shown.evaluate(source) - np.array(inputs.destination)
+        destination = np.array(inputs.destination)
+        residuals = np.linalg.norm(shown.evaluate(source) - destination, axis=1)
+        # What is only rounding must not sort rows or draw bars.
+        residuals[residuals < ROUNDING * np.abs(destination).max()] = 0.0
         return WarpResult(
             inputs=inputs,
             factor=factor,
             spline=spline,
             shown=shown,
-            residuals=np.linalg.norm(misses, axis=1),
+            residuals=residuals,
             passengers=shown.evaluate(passengers) if len(passengers) else passengers,
         )
 
