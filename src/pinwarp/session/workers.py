@@ -185,7 +185,7 @@ def on_cluster(
     try:
         futures = client.map(partial(_on_one_core, function), tasks, pure=False, retries=RETRIES)
         task_of = dict(zip((future.key for future in futures), tasks, strict=True))
-        for future in as_completed(futures):
+        for future in as_completed(futures, loop=client.loop):
             yield task_of[future.key], _result(future)
             future.release()
     finally:
