@@ -43,10 +43,10 @@ def make_app(open_window: OpenWindow) -> typer.Typer:
             ),
         ] = None,
         source_landmarks: Annotated[
-            Path | None, typer.Option(metavar="CSV", help="Landmarks on the source mesh.")
+            Path | None, typer.Option(metavar="FILE", help="Landmarks on the source mesh.")
         ] = None,
         destination_landmarks: Annotated[
-            Path | None, typer.Option(metavar="CSV", help="Landmarks on the destination mesh.")
+            Path | None, typer.Option(metavar="FILE", help="Landmarks on the destination mesh.")
         ] = None,
         demo: Annotated[bool, typer.Option("--demo", help="Open the sample bones.")] = False,
         screenshot: Annotated[

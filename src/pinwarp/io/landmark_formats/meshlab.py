@@ -11,13 +11,8 @@ from xml.sax.saxutils import quoteattr
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.io.csv_cells import YES_NO, coordinates_text, shortened
-from pinwarp.io.landmark_formats.reading import (
-    Gathering,
-    LandmarkReading,
-    landmark_on,
-    one_line,
-    three_numbers,
-)
+from pinwarp.io.landmark_formats.lines import landmark_on, one_line, three_numbers
+from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written
 
 NAME = "MeshLab .pp"

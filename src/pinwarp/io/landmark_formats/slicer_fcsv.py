@@ -15,12 +15,8 @@ from pinwarp.io.csv_cells import (
     shortened,
 )
 from pinwarp.io.csv_text import Row, csv_line, lines_of, rows_of
-from pinwarp.io.landmark_formats.reading import (
-    Gathering,
-    LandmarkReading,
-    landmark_on,
-    one_line,
-)
+from pinwarp.io.landmark_formats.lines import landmark_on, one_line
+from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written, in_millimetres, placed_only
 
 NAME = "3D Slicer .fcsv"

@@ -12,7 +12,8 @@ from typing import Any, TypeVar
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Position, Side
 from pinwarp.io.csv_cells import shortened
-from pinwarp.io.landmark_formats.reading import MOST, Gathering, LandmarkReading, landmark_on
+from pinwarp.io.landmark_formats.lines import landmark_on
+from pinwarp.io.landmark_formats.reading import MOST, Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written, in_millimetres
 
 T = TypeVar("T")
