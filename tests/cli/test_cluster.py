@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import tempfile
+import threading
 import time
 from functools import partial
 
@@ -47,6 +48,16 @@ def test_the_command_runs_on_a_cluster(pinwarp_command, study, tmp_path, cluster
     pinwarp_command(*arguments, "-o", here, "--jobs", 1, exit_code=1)
     for name in ("s0_warped.ply", "s2_warped.ply", "s2_passengers.landmarks.csv"):
         assert (there / name).read_bytes() == (here / name).read_bytes()
+
+
+def test_a_batch_on_a_cluster_can_be_stopped(cluster):
+    stop = threading.Event()
+    done = []
+    slow = partial(on_cluster, scheduler=cluster.scheduler_address, stop=stop)
+    for task, _ in slow(time.sleep, [0.1] * 100):
+        done.append(task)
+        stop.set()
+    assert len(done) == 1
 
 
 def test_a_batch_on_a_cluster_survives_the_death_of_a_worker(tmp_path, cluster):

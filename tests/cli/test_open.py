@@ -27,7 +27,8 @@ def test_a_session_opens_in_the_window(pinwarp_command, study):
 
 def test_a_first_word_that_is_no_command_is_a_file(pinwarp_command):
     outcome = pinwarp_command("wrap", exit_code=2)
-    assert "wrap does not exist" in outcome.stderr
+    assert "wrap does not exist. It is no command either" in outcome.stderr
+    assert "command" not in pinwarp_command("wrap.ply", exit_code=2).stderr
     assert not pinwarp_command.opened
 
 

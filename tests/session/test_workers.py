@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 import time
 from pathlib import Path
 
@@ -55,6 +56,18 @@ def test_a_process_that_is_killed_by_accident_costs_nothing(tmp_path):
     tasks = [(number, str(tmp_path / "mark")) for number in range(6)]
     results = dict(on_this_machine(deadly_once, tasks, jobs=2))
     assert results == {task: task[0] ** 2 for task in tasks}
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_what_was_begun_is_finished_when_no_more_is_wanted(jobs):
+    stop = threading.Event()
+    done = []
+    for task, result in on_this_machine(slow_task_id, range(50), jobs=jobs, stop=stop):
+        done.append(task)
+        assert result[0] == task
+        stop.set()
+    assert sorted(done) == list(range(len(done)))
+    assert 1 <= len(done) <= 2 * jobs
 
 
 def test_a_scheduler_that_does_not_answer_is_named(monkeypatch):

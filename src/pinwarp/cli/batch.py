@@ -114,7 +114,7 @@ def batch(
     )
     if subjects.unused:
         tell_notes([f"{manifest.name}: not used: {', '.join(subjects.unused)}."])
-    with progress_bar() as progress, _ends_as_by_ctrl_c():
+    with progress_bar() as progress, _stopped_by_signals() as stop:
         bar = progress.add_task("Warping", total=len(tasks))
 
         def told(task: Task, status: str, words: str) -> None:
@@ -123,7 +123,11 @@ def batch(
                 tell_error(f"{task.subject.name}: {words}")
 
         tally = batches.run(
-            tasks, out.absolute(), runner_of(jobs or cores(), scheduler), force=force, told=told
+            tasks,
+            out.absolute(),
+            runner_of(jobs or cores(), scheduler, stop),
+            force=force,
+            told=told,
         )
     typer.echo(
         f"{tally.done} done, {tally.unchanged} unchanged, {tally.failed} failed "
@@ -172,13 +176,24 @@ def _read(path: Path, role: Role, unit: str) -> tuple[Landmark, ...]:
 
 
 @contextlib.contextmanager
-def _ends_as_by_ctrl_c() -> Iterator[None]:
-    """Let a batch that a cluster's queue ends by SIGTERM end as cleanly as by Ctrl+C."""
+def _stopped_by_signals() -> Iterator[threading.Event]:
+    """Give an event that Ctrl+C sets, and SIGTERM, by which a cluster's queue ends a job.
+
+    Nothing is interrupted at an unlucky moment; whoever presses Ctrl+C again means it.
+    """
+    stop = threading.Event()
+
+    def handle(_number: int, _frame: object) -> None:
+        if stop.is_set():
+            raise KeyboardInterrupt
+        stop.set()
+
     if threading.current_thread() is not threading.main_thread():
-        yield
+        yield stop
         return
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    before = {number: signal.signal(number, handle) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
-        yield
+        yield stop
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)

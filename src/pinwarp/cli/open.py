@@ -78,7 +78,9 @@ def _sort_files(files: list[Path]) -> tuple[Path | None, Path | None, Path | Non
     """Tell a session from meshes."""
     for path in files:
         if not path.exists():
-            raise typer.BadParameter(f"{path} does not exist.")
+            # A word without a dot may be a mistyped command.
+            hint = "" if "." in str(path) else " It is no command either: see pinwarp --help."
+            raise typer.BadParameter(f"{path} does not exist.{hint}")
     if len(files) == 1 and is_session(files[0]):
         return files[0], None, None
     if any(is_session(path) for path in files):

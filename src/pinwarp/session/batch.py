@@ -164,7 +164,7 @@ def run(
     """Do what is to be done and keep the table of results up to date.
 
     A task is passed over where its row in the table says that it was made from the same inputs
-    and options, and its outputs are there. Interrupted by Ctrl+C, what was done stays.
+    and options, and its outputs are there. Where the runner is stopped, what was done stays.
 
     Parameters
     ----------
@@ -205,8 +205,6 @@ def run(
                 summary.take(row)
                 count[row["status"]] += 1
                 told(task, row["status"], row.get("error", ""))
-    except KeyboardInterrupt:
-        pass  # the tally tells it
     finally:
         summary.save()
     return Tally(

@@ -29,6 +29,8 @@ R = TypeVar("R")
 # How often a task is begun again when it ends by an exception of the cluster.
 RETRIES = 2
 ANSWERS_WITHIN = "15s"
+# How soon it is noticed that no more is wanted, in seconds.
+LOOKS_UP_EVERY = 0.2
 
 
 class Runner(Protocol):
@@ -54,12 +56,15 @@ def cores() -> int:
 
 
 def on_this_machine(
-    function: Callable[[T], R], tasks: Sequence[T], *, jobs: int
+    function: Callable[[T], R],
+    tasks: Sequence[T],
+    *,
+    jobs: int,
+    stop: threading.Event | None = None,
 ) -> Generator[tuple[T, R | Exception]]:
     """Run tasks in processes of their own, each on one core.
 
-    When interrupted by Ctrl+C, tasks that have begun are finished and yielded before
-    KeyboardInterrupt goes on. When a process dies, only the task it was at is lost.
+    When a process dies, only the task it was at is lost.
 
     Parameters
     ----------
@@ -69,6 +74,8 @@ def on_this_machine(
         What it is called with.
     jobs
         How many processes; with 1 everything happens in this one.
+    stop
+        Once it is set nothing more is begun; what was begun is finished and yielded.
 
     Yields
     ------
@@ -79,16 +86,17 @@ def on_this_machine(
     >>> list(on_this_machine(abs, [-1, 2], jobs=1))
     [(-1, 1), (2, 2)]
     """
-    if jobs == 1:
-        for task in tasks:
-            yield task, function(task)
-        return
+    stop = stop or threading.Event()
     waiting = deque(tasks)
-    while waiting:
-        suspects = yield from _until_one_dies(function, waiting, min(jobs, len(waiting)))
+    while waiting and not stop.is_set():
+        if jobs == 1:
+            task = waiting.popleft()
+            yield task, function(task)
+            continue
+        suspects = yield from _until_one_dies(function, waiting, min(jobs, len(waiting)), stop)
         for task in suspects:
             # Alone it is clear which of them ends its process.
-            if (yield from _until_one_dies(function, deque([task]), 1)):
+            if (yield from _until_one_dies(function, deque([task]), 1, stop)):
                 yield (
                     task,
                     PinwarpError(
@@ -99,29 +107,23 @@ def on_this_machine(
 
 
 def _until_one_dies(
-    function: Callable[[T], R], waiting: deque[T], jobs: int
+    function: Callable[[T], R], waiting: deque[T], jobs: int, stop: threading.Event
 ) -> Generator[tuple[T, R | Exception], None, list[T]]:
     """Run what waits; where a process dies, return what was begun and not finished."""
     pool = ProcessPoolExecutor(jobs, get_context("spawn"), initializer=_be_a_worker)
     running: dict[Future[R], T] = {}
     try:
-        while waiting or running:
+        while running or (waiting and not stop.is_set()):
             # Not all at once: only what was begun is suspected when a process dies.
-            while waiting and len(running) < 2 * jobs:
+            while waiting and len(running) < 2 * jobs and not stop.is_set():
                 with _without_ctrl_c():
                     running[pool.submit(function, waiting[0])] = waiting[0]
                 waiting.popleft()
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
+            for future in wait(running, LOOKS_UP_EVERY, FIRST_COMPLETED).done:
                 result = future.result()
                 yield running.pop(future), result
     except BrokenProcessPool:
         return list(running.values())
-    except KeyboardInterrupt:
-        pool.shutdown(wait=True, cancel_futures=True)
-        for future, task in running.items():
-            if not future.cancelled() and future.exception() is None:
-                yield task, future.result()
-        raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
     return []
@@ -162,7 +164,11 @@ def _keep_to_one_core() -> None:
 
 
 def on_cluster(
-    function: Callable[[T], R], tasks: Sequence[T], *, scheduler: str
+    function: Callable[[T], R],
+    tasks: Sequence[T],
+    *,
+    scheduler: str,
+    stop: threading.Event | None = None,
 ) -> Generator[tuple[T, R | Exception]]:
     """Run tasks on a Dask cluster that is there already.
 
@@ -176,6 +182,8 @@ def on_cluster(
         What it is called with.
     scheduler
         The address, such as ``tcp://10.0.0.1:8786``.
+    stop
+        Once it is set what is not done yet is cancelled.
 
     Yields
     ------
@@ -196,11 +204,17 @@ def on_cluster(
         client = Client(scheduler, timeout=ANSWERS_WITHIN, set_as_default=False)
     except (OSError, ValueError) as error:
         raise PinwarpError(f"No Dask scheduler answers at {scheduler}: {error}") from error
+    stop = stop or threading.Event()
     futures: list[Any] = []
     try:
         futures = client.map(partial(_on_one_core, function), tasks, pure=False, retries=RETRIES)
         task_of = dict(zip((future.key for future in futures), tasks, strict=True))
-        for future in as_completed(futures, loop=client.loop):
+        done = as_completed(futures, loop=client.loop)
+        while done.count() and not stop.is_set():
+            if not done.has_ready():
+                stop.wait(LOOKS_UP_EVERY)
+                continue
+            future = next(done)
             yield task_of[future.key], _result(future)
             future.release()
     finally:
@@ -220,7 +234,7 @@ def _result(future: Any) -> Any:
         return error
 
 
-def runner_of(jobs: int, scheduler: str | None) -> Runner:
+def runner_of(jobs: int, scheduler: str | None, stop: threading.Event | None = None) -> Runner:
     """Return the runner for a cluster where one is named, else for this machine.
 
     Examples
@@ -229,5 +243,5 @@ def runner_of(jobs: int, scheduler: str | None) -> Runner:
     [('ab', 2)]
     """
     if scheduler is not None:
-        return partial(on_cluster, scheduler=scheduler)
-    return partial(on_this_machine, jobs=jobs)
+        return partial(on_cluster, scheduler=scheduler, stop=stop)
+    return partial(on_this_machine, jobs=jobs, stop=stop)
