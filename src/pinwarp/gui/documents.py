@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from pinwarp.core.errors import PinwarpError
+from pinwarp.core.errors import PinwarpError, words_of
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.dialogs import OpenTwice
 from pinwarp.gui.file_tasks import (
@@ -14,7 +14,6 @@ from pinwarp.gui.file_tasks import (
     MESH_FILES,
     SESSION_FILES,
     FileTasks,
-    words_of,
 )
 from pinwarp.gui.recent_files import RecentFiles
 from pinwarp.gui.recovery import where_open

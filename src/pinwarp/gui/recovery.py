@@ -8,7 +8,8 @@ from pathlib import Path
 
 from qtpy.QtCore import QObject, Qt, Signal
 
-from pinwarp.gui.file_tasks import FileTasks, words_of
+from pinwarp.core.errors import words_of
+from pinwarp.gui.file_tasks import FileTasks
 from pinwarp.gui.lost_work_dialog import LostAnswer, moment_in_words
 from pinwarp.gui.saving import Saving
 from pinwarp.gui.session_meshes import SessionMeshes

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from pinwarp.core.errors import words_of
 from pinwarp.gui.dialogs import Answer, Overwrite
-from pinwarp.gui.file_tasks import SESSION_FILES, FileTasks, words_of
+from pinwarp.gui.file_tasks import SESSION_FILES, FileTasks
 from pinwarp.gui.recent_files import RecentFiles
 from pinwarp.io.backup import write_keeping_previous
 from pinwarp.io.file_names import SESSION_SUFFIX, is_session, session_name

@@ -13,7 +13,6 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.io.atomic import atomic_path
 from pinwarp.io.mesh_formats.obj import read_obj, write_obj
 from pinwarp.io.mesh_formats.ply import read_ply, write_ply
-from pinwarp.io.mesh_formats.polydata import write_legacy_vtk, write_vtp
 from pinwarp.io.mesh_formats.stl import read_stl, write_stl
 from pinwarp.io.mesh_formats.surface import BrokenMeshError
 from pinwarp.io.mesh_formats.triangles import mesh_of
@@ -30,12 +29,27 @@ _READERS = {
     ".vtp": read_vtp,
     ".vtk": read_legacy_vtk,
 }
+
+
+def _write_vtp(path: Path, mesh: Mesh) -> None:
+    # VTK is loaded only for what needs it.
+    from pinwarp.io.mesh_formats.polydata import write_vtp
+
+    write_vtp(path, mesh)
+
+
+def _write_legacy_vtk(path: Path, mesh: Mesh) -> None:
+    from pinwarp.io.mesh_formats.polydata import write_legacy_vtk
+
+    write_legacy_vtk(path, mesh)
+
+
 _WRITERS = {
     ".stl": write_stl,
     ".ply": write_ply,
     ".obj": write_obj,
-    ".vtp": write_vtp,
-    ".vtk": write_legacy_vtk,
+    ".vtp": _write_vtp,
+    ".vtk": _write_legacy_vtk,
 }
 
 
@@ -55,6 +69,13 @@ class MeshFile:
         What was changed or left out, as sentences for the user.
     mirrored
         The axes across which the mesh was mirrored after reading, such as ``"x"``.
+
+    Examples
+    --------
+    >>> from pinwarp.io.samples import assets_folder
+    >>> file = read_mesh(assets_folder() / "femur_generic.ply")
+    >>> file.path.name, len(file.mesh.vertices), file.notes
+    ('femur_generic.ply', 10000, ())
     """
 
     path: Path
