@@ -15,6 +15,7 @@ class FindingKind(StrEnum):
     CLOSE = "close"
     NEARLY_PLANAR = "nearly planar"
     POLE = "pole"
+    FOLD = "fold"
     INCONSISTENT = "inconsistent"
     SUSPECT = "suspect"
     ISOLATED = "isolated"
@@ -35,10 +36,11 @@ class Finding:
     value
         The figure that goes with it: for a conflict or close landmarks the distance on the
         destination or source (mesh units), for nearly planar landmarks the ratio of the
-        smallest to the largest extent, for a pole its penalty (mesh units). For inconsistent
-        landmarks their distance on the source, for a suspect its standardised leave-one-out
-        error, for an isolated landmark the distance to the nearest, for swapped or mirrored
-        ones the share of the error that is left when that is put right.
+        smallest to the largest extent, for a pole its penalty (mesh units), for a fold the
+        number of its vertices. For inconsistent landmarks their distance on the source, for a
+        suspect its standardised leave-one-out error, for an isolated landmark the distance to
+        the nearest, for swapped or mirrored ones the share of the error that is left when that
+        is put right.
     others
         Further figures: for inconsistent landmarks their distance on the destination, for a
         suspect or isolated landmark its leave-one-out error (mesh units).
@@ -64,7 +66,7 @@ class Finding:
         >>> Finding(FindingKind.CONFLICT, (0, 1), 2.5).describe(["apex", "tip"], "mm")
         'apex and tip lie at the same place on the source but 2.5 mm apart on the destination.'
         """
-        who = " and ".join(names[row] if names else f"landmark {row}" for row in self.rows)
+        who = _listed([names[row] if names else f"landmark {row}" for row in self.rows])
         length = f"{self.value:.4g} {unit}".rstrip()
         other = f"{self.others[0]:.3g} {unit}".rstrip() if self.others else ""
         match self.kind:
@@ -85,6 +87,10 @@ class Finding:
                     f"The penalty is near or above the pole at {length}: under the OPYNSIM "
                     "convention it over-warps there instead of smoothing."
                 )
+            case FindingKind.FOLD:
+                fold = "1 vertex folds" if self.value == 1 else f"{self.value:,.0f} vertices fold"
+                near = f" near {who}" if who else ""
+                return f"{fold}{near}: the warp turns the surface inside out there."
             case FindingKind.INCONSISTENT:
                 near = f"{self.value:.3g} {unit}".rstrip()
                 return f"{who} are {near} apart on the source, {other} on the destination."
@@ -109,6 +115,11 @@ class Finding:
                     "The destination looks like a mirror image of the source: "
                     "are they a left and a right bone?"
                 )
+
+
+def _listed(words: Sequence[str]) -> str:
+    """Say one or several."""
+    return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
 
 
 def _round_down(value: float) -> str:

@@ -14,7 +14,7 @@ from qtpy.QtGui import QSurfaceFormat
 from qtpy.QtWidgets import QApplication
 from threadpoolctl import threadpool_limits
 
-from pinwarp.core import kernel
+from pinwarp.core import kernel, surface_distance
 from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Opening
 from pinwarp.gui.fast_view import default_format
@@ -102,7 +102,7 @@ def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None)
             window.documents.open(opening)
         if screenshot is None:
             # Loading numba takes a second of the interpreter's time: after the first picture.
-            warm_up = threading.Thread(target=kernel.warm_up, daemon=True)
+            warm_up = threading.Thread(target=_warm_up, daemon=True)
             QTimer.singleShot(_WARM_UP_AFTER_MS, warm_up.start)
             return int(application.exec())
         saved = save_picture(window, screenshot)
@@ -110,6 +110,12 @@ def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None)
         window.editor.replace_all(window.editor.session, None)
         window.close()
         return 1 if failed else 0
+
+
+def _warm_up() -> None:
+    """Load all that is compiled, what is needed first before the rest."""
+    kernel.warm_up()
+    surface_distance.warm_up()
 
 
 def save_picture(window: MainWindow, path: Path) -> bool:

@@ -1,0 +1,321 @@
+"""How far places lie from a triangle surface, exactly, and how far two surfaces lie apart."""
+
+from __future__ import annotations
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import KDTree
+
+from pinwarp.core import kernel
+from pinwarp.core.mesh import Mesh
+
+Matrix = NDArray[np.float64]
+Rows = NDArray[np.int64]
+
+# The most triangles in a leaf of the tree: fewer cost memory, more cost time.
+LEAF = 4
+# Below so many places and triangles numpy is done before numba would have been loaded.
+WORTH_COMPILING = 2000
+# Below so many places (a few milliseconds) a second thread is not worth starting.
+WORTH_THREADS = 4000
+# A triangle flatter than this is taken for its edges: its normal would be mostly rounding.
+FLAT = 1e-8
+
+
+class SurfaceIndex:
+    """The triangles of a mesh in a tree of boxes, to find the closest to any place.
+
+    Immutable: any thread may ask. To build it takes 0.3 s for 180,000 triangles.
+
+    Parameters
+    ----------
+    mesh
+        Vertices without a triangle are no part of the surface; triangles without area count as
+        the edge or the place that they are.
+
+    Examples
+    --------
+    >>> index = SurfaceIndex(Mesh([[0, 0, 0], [1, 0, 0], [0, 2, 0]], [[0, 1, 2]]))
+    >>> index.distances([[0.2, 0.2, 3.0], [4.0, 0.0, 4.0]]).tolist()
+    [3.0, 5.0]
+    """
+
+    def __init__(self, mesh: Mesh) -> None:
+        self.mesh = mesh
+        corners = mesh.vertices[mesh.faces]
+        levels = max(0, math.ceil(math.log2(len(corners) / LEAF)))
+        self._order = _order(corners.min(axis=1) + corners.max(axis=1), levels)
+        self._boxes = _boxes(corners[self._order], levels)
+        self._triangles = _prepared(corners[self._order])
+
+    def distances(self, places: ArrayLike) -> Matrix:
+        """Return the distance of every place from the surface.
+
+        Parameters
+        ----------
+        places
+            (m, 3) in the frame and unit of the mesh; fastest where neighbours follow one another.
+
+        Returns
+        -------
+        (m,) float64
+            In mesh units, never negative.
+
+        Raises
+        ------
+        LandmarkError
+            When a place is not finite (the message names its row) or the shape is another.
+        """
+        return np.sqrt(self._search(kernel.as_points(places))[1])
+
+    def closest(self, places: ArrayLike) -> tuple[Matrix, Rows]:
+        """Return the closest position on the surface, and the triangle that it lies in.
+
+        Parameters
+        ----------
+        places
+            As for :meth:`distances`.
+
+        Returns
+        -------
+        positions : (m, 3) float64
+            In the frame and unit of the mesh.
+        triangles : (m,) int64
+            Rows of ``mesh.faces``; any of them where several are equally close.
+        """
+        places = kernel.as_points(places)
+        rows, _ = self._search(places)
+        return places - _apart(self._triangles[rows], places), self._order[rows]
+
+    def _search(self, places: Matrix) -> tuple[Rows, Matrix]:
+        """Return the row in the tree of every place's closest triangle, and squared distances."""
+        loops = _compiled() if len(places) + len(self._order) >= WORTH_COMPILING else None
+        if loops is None:
+            return self._search_with_numpy(places)
+        # What is read-only, as a mesh's vertices are, would be compiled for once more.
+        places = np.require(places, requirements="W")
+        rows, squares = np.empty(len(places), np.int64), np.empty(len(places))
+        threads = loops.THREADS if len(places) >= WORTH_THREADS else 1
+        # Several parts a thread: far places take longer than close ones.
+        edges = np.linspace(0, len(places), 4 * threads + 1 if threads > 1 else 2).astype(int)
+
+        def search(first: int, last: int) -> None:
+            part = slice(first, last)
+            loops.closest_triangles(
+                self._boxes, self._triangles, places[part], rows[part], squares[part]
+            )
+
+        if threads == 1:
+            search(0, len(places))
+        else:
+            with ThreadPoolExecutor(threads) as pool:
+                list(pool.map(search, edges[:-1].tolist(), edges[1:].tolist()))
+        return rows, squares
+
+    def _search_with_numpy(self, places: Matrix) -> tuple[Rows, Matrix]:
+        """Search for all places at once: each box is asked who may find something closer in it."""
+        _, found = KDTree(self._triangles[:, :3]).query(places)
+        rows = np.asarray(found, dtype=np.int64)
+        squares = _square(_apart(self._triangles[rows], places))
+        leaves = (len(self._boxes) + 1) // 2
+        leaf = len(self._order) // leaves
+        waiting = [(0, np.arange(len(places)))]
+        while waiting:
+            node, who = waiting.pop()
+            outside = np.maximum(self._boxes[node, :3] - places[who], 0.0)
+            outside += np.maximum(places[who] - self._boxes[node, 3:], 0.0)
+            who = who[_square(outside) < squares[who]]
+            if not len(who):
+                continue
+            if node < leaves - 1:
+                waiting += [(2 * node + 2, who), (2 * node + 1, who)]
+                continue
+            inside = np.arange((node - leaves + 1) * leaf, (node - leaves + 2) * leaf)
+            triangles = self._triangles[np.tile(inside, len(who))]
+            reached = _square(_apart(triangles, np.repeat(places[who], leaf, axis=0)))
+            reached = reached.reshape(-1, leaf)
+            best = reached.min(axis=1)
+            closer = best < squares[who]
+            squares[who[closer]] = best[closer]
+            rows[who[closer]] = inside[reached.argmin(axis=1)[closer]]
+        return rows, squares
+
+
+def _compiled() -> ModuleType | None:
+    # The kernel knows whether numba works here, and where it may keep what it compiled.
+    if kernel.compiled() is None:
+        return None
+    from pinwarp.core import compiled_distance
+
+    return compiled_distance
+
+
+def warm_up() -> None:
+    """Load the compiled search, so that the first real one does not wait."""
+    loops = _compiled()
+    if loops is not None:
+        index = SurfaceIndex(Mesh(np.eye(3), [[0, 1, 2]]))
+        rows, squares = np.empty(1, np.int64), np.empty(1)
+        loops.closest_triangles(index._boxes, index._triangles, np.zeros((1, 3)), rows, squares)
+
+
+def _order(centres: Matrix, levels: int) -> Rows:
+    """Return rows of triangles such that each half, quarter, ... of them lies close together."""
+    leaves = 2**levels
+    count = leaves * -(-len(centres) // leaves)
+    # All leaves hold as many: some triangles are taken twice.
+    order = np.arange(count) * len(centres) // count
+    for level in range(levels):
+        parts = order.reshape(2**level, -1)
+        places = centres[parts]
+        longest = np.argmax(np.ptp(places, axis=1), axis=1)
+        along = np.take_along_axis(places, longest[:, None, None], axis=2)[:, :, 0]
+        halves = np.argpartition(along, parts.shape[1] // 2, axis=1)
+        order = np.take_along_axis(parts, halves, axis=1)
+    return np.asarray(order.ravel(), dtype=np.int64)
+
+
+def _boxes(corners: Matrix, levels: int) -> Matrix:
+    """Return the boxes of a complete binary tree, the root first, the leaves last."""
+    first = 2**levels - 1
+    boxes = np.empty((2 * first + 1, 6))
+    leaves = corners.reshape(first + 1, -1, 3)
+    boxes[first:] = np.hstack([leaves.min(axis=1), leaves.max(axis=1)])
+    while first:
+        halves = boxes[first : 2 * first + 1].reshape(-1, 2, 6)
+        above = first // 2
+        boxes[above:first, :3] = halves[:, :, :3].min(axis=1)
+        boxes[above:first, 3:] = halves[:, :, 3:].max(axis=1)
+        first = above
+    return boxes
+
+
+def _prepared(corners: Matrix) -> Matrix:
+    """Return (t, 12): a corner, the two edges from it, and the normal over its square."""
+    corner = corners[:, 0]
+    u, v = corners[:, 1] - corner, corners[:, 2] - corner
+    normal = np.cross(u, v)
+    square = _square(normal)
+    longest = np.maximum(_square(u), np.maximum(_square(v), _square(v - u)))
+    has_area = square > (FLAT * longest) ** 2
+    over = np.full_like(normal, np.nan)
+    np.divide(normal, square[:, None], out=over, where=has_area[:, None])
+    return np.hstack([corner, u, v, over])
+
+
+def _apart(triangles: Matrix, places: Matrix) -> Matrix:
+    """Return the vectors from the closest positions of prepared triangles to places."""
+    corner, u, v, normal = np.split(triangles, 4, axis=1)
+    d = places - corner
+    s = np.sum(np.cross(d, v) * normal, axis=1, keepdims=True)
+    t = np.sum(np.cross(u, d) * normal, axis=1, keepdims=True)
+    # False for a triangle without area, whose normal is NaN.
+    within = ((s >= 0) & (t >= 0) & (s + t <= 1))[:, 0]
+    best = np.where(within[:, None], d - s * u - t * v, np.inf)
+    for to_place, edge in ((d, u), (d, v), (d - u, v - u)):
+        length = _square(edge)
+        share = np.zeros(len(places))
+        np.divide(np.sum(to_place * edge, axis=1), length, out=share, where=length > 0)
+        apart = to_place - np.clip(share, 0.0, 1.0)[:, None] * edge
+        closer = ~within & (_square(apart) < _square(best))
+        best[closer] = apart[closer]
+    return best
+
+
+def _square(vectors: Matrix) -> Matrix:
+    return np.asarray(np.sum(vectors * vectors, axis=1))
+
+
+@dataclass(frozen=True, slots=True)
+class DistanceFigures:
+    """Some distances in four figures, in mesh units.
+
+    Examples
+    --------
+    >>> DistanceFigures.of([3.0, 4.0])
+    DistanceFigures(mean=3.5, rms=3.5355339059327378, percentile_95=3.95, maximum=4.0)
+    """
+
+    mean: float
+    rms: float
+    percentile_95: float
+    maximum: float
+
+    @classmethod
+    def of(cls, distances: ArrayLike) -> DistanceFigures:
+        """Return the figures of at least one distance."""
+        values = np.asarray(distances, dtype=np.float64)
+        return cls(
+            mean=float(values.mean()),
+            rms=float(np.sqrt(np.mean(values * values))),
+            percentile_95=float(np.percentile(values, 95)),
+            maximum=float(values.max()),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceComparison:
+    """How far two surfaces lie apart, sampled at their vertices.
+
+    A finely meshed region therefore weighs more than a coarse one: nothing is weighted by area.
+    The figures and the Hausdorff distance are over the vertices that belong to a triangle.
+
+    Attributes
+    ----------
+    forward : (m,) float64
+        Of every vertex of a: its distance from surface b, in mesh units.
+    backward : (k,) float64
+        Of every vertex of b: its distance from surface a.
+    forward_figures, backward_figures : DistanceFigures
+        Of either.
+    """
+
+    forward: Matrix
+    backward: Matrix
+    forward_figures: DistanceFigures
+    backward_figures: DistanceFigures
+
+    @property
+    def hausdorff(self) -> float:
+        """The largest distance either way."""
+        return max(self.forward_figures.maximum, self.backward_figures.maximum)
+
+
+def compare_surfaces(
+    a: Mesh, b: Mesh, *, index_a: SurfaceIndex | None = None, index_b: SurfaceIndex | None = None
+) -> SurfaceComparison:
+    """Return how far two surfaces lie apart.
+
+    Parameters
+    ----------
+    a, b
+        In the same frame and unit, such as the warped source and the destination.
+    index_a, index_b
+        Their indexes, where they are built already.
+
+    Returns
+    -------
+    SurfaceComparison
+        ``forward`` from a to b, ``backward`` from b to a.
+
+    Examples
+    --------
+    >>> low = Mesh([[0, 0, 0], [2, 0, 0], [0, 2, 0]], [[0, 1, 2]])
+    >>> high = Mesh([[0, 0, 1], [4, 0, 1], [0, 4, 1]], [[0, 1, 2]])
+    >>> compared = compare_surfaces(low, high)
+    >>> compared.forward.tolist(), round(compared.hausdorff, 6)
+    ([1.0, 1.0, 1.0], 2.236068)
+    """
+    forward = (index_b or SurfaceIndex(b)).distances(a.vertices)
+    backward = (index_a or SurfaceIndex(a)).distances(b.vertices)
+    return SurfaceComparison(
+        forward,
+        backward,
+        DistanceFigures.of(forward[np.unique(a.faces)]),
+        DistanceFigures.of(backward[np.unique(b.faces)]),
+    )
