@@ -17,6 +17,7 @@ from pinwarp.io.mesh_formats.polydata import write_legacy_vtk, write_vtp
 from pinwarp.io.mesh_formats.stl import read_stl, write_stl
 from pinwarp.io.mesh_formats.surface import BrokenMeshError
 from pinwarp.io.mesh_formats.triangles import mesh_of
+from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
 from pinwarp.io.mesh_formats.vtk_legacy import read_legacy_vtk
 from pinwarp.io.mesh_formats.vtp import read_vtp
 from pinwarp.io.reading import read_content
@@ -122,7 +123,7 @@ def read_mesh(
     return MeshFile(content.path, mesh, content.sha256, notes)
 
 
-def write_mesh(path: str | Path, mesh: Mesh) -> None:
+def write_mesh(path: str | Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     """Write a mesh in the format of the file's suffix, all of it or nothing.
 
     Parameters
@@ -131,6 +132,9 @@ def write_mesh(path: str | Path, mesh: Mesh) -> None:
         The file. All formats but STL keep double precision; STL knows only single.
     mesh
         The mesh.
+    extras
+        Normals (PLY, OBJ, VTP, VTK) and scalars (PLY, VTP, VTK) to go with its vertices; STL has
+        room for neither.
 
     Raises
     ------
@@ -153,7 +157,7 @@ def write_mesh(path: str | Path, mesh: Mesh) -> None:
         raise _unknown_suffix(path)
     with atomic_path(path) as temporary:
         try:
-            write(temporary, mesh)
+            write(temporary, mesh, extras)
         except BrokenMeshError as error:
             raise FileFormatError(path, str(error)) from error
 
