@@ -22,7 +22,7 @@ from pinwarp.gui.jobs import Cancelled
 from pinwarp.gui.recent_files import RecentFiles
 from pinwarp.gui.surface import Surface
 from pinwarp.io.file_names import SESSION_SUFFIX, is_session
-from pinwarp.io.landmark_formats.opensim_creator import LandmarkReading, read_landmarks
+from pinwarp.io.landmark_files import LANDMARK_SUFFIXES, LandmarkReading, read_landmarks
 from pinwarp.io.meshes import MESH_SUFFIXES, MeshFile, read_mesh
 from pinwarp.io.session_file import MeshReference, read_session, write_session
 from pinwarp.io.template import read_template
@@ -114,14 +114,14 @@ class Documents:
             self.open_mesh(mesh_side, path)
         others = [path for path in paths if path not in meshes]
         for path in others:
-            if path.suffix.lower() in (".csv", ".txt"):
+            if path.name.lower().endswith(LANDMARK_SUFFIXES):
                 self.import_landmarks(path, side)
             else:
                 suffixes = ", ".join(MESH_SUFFIXES)
                 self._tasks.dialogs.tell_error(
                     "Cannot open this file",
-                    f"{path.name} is neither a mesh ({suffixes}) nor landmarks or a session "
-                    "(.csv).",
+                    f"{path.name} is neither a mesh ({suffixes}) nor landmarks "
+                    f"({', '.join(LANDMARK_SUFFIXES)}) nor a session ({SESSION_SUFFIX}).",
                 )
 
     def ask_and_open_mesh(self, side: Side) -> None:
@@ -257,8 +257,7 @@ class Documents:
         loaded
             Called with the first landmark that is not complete then.
         """
-        filters = "Landmark lists (*.csv *.txt);;All files (*)"
-        path = self._tasks.dialogs.ask_open("Load a template", filters, self._tasks.folder())
+        path = self._tasks.dialogs.ask_open("Load a template", LANDMARK_FILES, self._tasks.folder())
         if path is None:
             return
 
@@ -273,7 +272,8 @@ class Documents:
     def _report_import(self, path: Path, reading: LandmarkReading) -> None:
         count = len(reading.landmarks)
         what = "pair" if reading.is_pairs else "landmark"
-        self._tasks.said.emit(f"{count} {what}{'' if count == 1 else 's'} from {path.name}")
+        summary = f"{count} {what}{'' if count == 1 else 's'} from {path.name} ({reading.format})"
+        self._tasks.said.emit(". ".join((summary, *reading.notes)))
         if reading.skipped:
             lines = [
                 f"Line {line.line}: {line.reason}\n    {line.text}" for line in reading.skipped

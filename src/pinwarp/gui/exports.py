@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from pinwarp.core.landmarks import Side
+from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.gui.file_tasks import LANDMARK_FILES, MESH_FILES, FileTasks, Progress
-from pinwarp.io.landmark_formats.opensim_creator import write_pairs, write_side
+from pinwarp.io.landmark_files import write_landmarks
 from pinwarp.io.meshes import write_mesh
 from pinwarp.session.editor import Editor
 from pinwarp.session.exports import applied_in_words, warped_mesh, warped_passengers
@@ -34,14 +35,7 @@ class Exports:
         path = self._tasks.dialogs.ask_save(f"Export {what} landmarks", LANDMARK_FILES, proposal)
         if path is None:
             return
-        landmarks = self._editor.committed.landmarks
-        write = (
-            (lambda: write_pairs(path, landmarks))
-            if side is None
-            else (lambda: write_side(path, landmarks, side))
-        )
-        if self._tasks.write(write, path):
-            self._tasks.said.emit(f"Exported {path.name}")
+        self._write(path, lambda: self._editor.committed.landmarks, side)
 
     def export_passengers(self) -> None:
         """Ask for a file and write where the warp carries the passengers."""
@@ -51,12 +45,20 @@ class Exports:
         )
         if path is None:
             return
+        self._write(path, lambda: warped_passengers(self._editor.committed), Side.DESTINATION)
+
+    def _write(
+        self, path: Path, landmarks: Callable[[], Sequence[Landmark]], side: Side | None
+    ) -> None:
+        """Write landmarks and say what the format could not hold."""
+        notes: tuple[str, ...] = ()
 
         def write() -> None:
-            write_side(path, warped_passengers(self._editor.committed), Side.DESTINATION)
+            nonlocal notes
+            notes = write_landmarks(path, landmarks(), side, unit=self._editor.committed.unit)
 
         if self._tasks.write(write, path):
-            self._tasks.said.emit(f"Exported {path.name}")
+            self._tasks.said.emit(". ".join((f"Exported {path.name}", *notes)))
 
     def ask_and_export_mesh(self) -> None:
         """Ask for a file and write the warped source mesh, in double precision."""

@@ -12,12 +12,15 @@ from pinwarp.core.errors import PinwarpError
 from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.jobs import Cancelled, SlowJob
 from pinwarp.io.file_names import SESSION_SUFFIX
+from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
 from pinwarp.io.meshes import MESH_SUFFIXES
 from pinwarp.session.editor import Editor
 
 MESH_FILES = "Meshes ({});;All files (*)".format(" ".join(f"*{suffix}" for suffix in MESH_SUFFIXES))
 SESSION_FILES = f"Sessions (*{SESSION_SUFFIX});;All files (*)"
-LANDMARK_FILES = "Landmarks (*.csv *.txt);;All files (*)"
+LANDMARK_FILES = "Landmarks ({});;All files (*)".format(
+    " ".join(f"*{suffix}" for suffix in LANDMARK_SUFFIXES)
+)
 
 Progress = Callable[[float, str], None]
 
@@ -62,10 +65,11 @@ class FileTasks:
         try:
             write()
         except (PinwarpError, OSError) as error:
-            self.dialogs.tell_error(
-                f"Cannot write {path.name}",
-                f"{words_of(error)}\nNothing was lost: try another folder.",
-            )
+            # Our own errors say the way out themselves.
+            text = words_of(error)
+            if isinstance(error, OSError):
+                text += "\nNothing was lost: try another folder."
+            self.dialogs.tell_error(f"Cannot write {path.name}", text)
             return False
         return True
 

@@ -1,10 +1,23 @@
-"""What reading a landmark file gives, whichever program wrote it."""
+"""What reading a landmark file gives, whichever program wrote it, and how it is put together."""
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import ParamSpec
 
-from pinwarp.core.landmarks import Landmark
+from pinwarp.core.errors import FileFormatError
+from pinwarp.core.landmarks import Landmark, Position, Side
+from pinwarp.io.csv_cells import number_of, shortened
+from pinwarp.io.csv_text import LONGEST_CELL, lines_of
+
+P = ParamSpec("P")
+
+_LONGEST_TEXT = 120
+# Control characters, line ends of every kind, and halves of characters.
+_NOT_IN_A_LINE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]+")
 
 
 @dataclass(frozen=True)
@@ -28,18 +41,226 @@ class SkippedLine:
 
 @dataclass(frozen=True)
 class LandmarkReading:
-    """What was found in a landmark file.
+    """What was found in a landmark file: all that a preview of an import shows.
 
     Parameters
     ----------
     landmarks
-        In the order of the file; a file of one side fills that side only.
+        In the order of the file; a file of one side fills that side only. Positions are those
+        of the file; a landmark without one is a name still to be placed.
     is_pairs
         Whether the file holds both sides.
     skipped
         The lines that could not be used; blank lines and comments are not among them.
+    format
+        What the format is called, such as ``"3D Slicer .fcsv"``.
+    frame
+        The frame the file says its positions are in, ``"LPS"`` or ``"RAS"``; empty where it
+        says nothing. LPS and RAS differ by the signs of x and y.
+    unit
+        The unit of length the file or its format says; empty where it says nothing.
+    notes
+        What else the user should know, as sentences.
     """
 
     landmarks: tuple[Landmark, ...]
     is_pairs: bool
     skipped: tuple[SkippedLine, ...]
+    format: str = ""
+    frame: str = ""
+    unit: str = ""
+    notes: tuple[str, ...] = ()
+
+    @property
+    def count(self) -> int:
+        """How many landmarks there are, those without a position included."""
+        return len(self.landmarks)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Their names, in the order of the file."""
+        return tuple(landmark.name for landmark in self.landmarks)
+
+
+class Gathering:
+    """Takes landmarks one by one, skips those that cannot be used, and sums up.
+
+    Parameters
+    ----------
+    path
+        The file, for the message when there is nothing in it.
+
+    Examples
+    --------
+    >>> gathering = Gathering("a.txt")
+    >>> gathering.take(1, "fovea", Landmark, "fovea")
+    >>> gathering.take(2, "fovea", Landmark, "fovea")
+    >>> gathering.reading("Text", "fovea").skipped[0].reason
+    "the name 'fovea' was used before"
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self._path = path
+        self._found: dict[str, Landmark] = {}
+        self._skipped: list[SkippedLine] = []
+
+    def take(
+        self,
+        line: int,
+        text: str,
+        make: Callable[P, Landmark],
+        *args: P.args,
+        **kwargs: P.kwargs,
+    ) -> None:
+        """Take the landmark that is made, or skip the line where making it raises ValueError."""
+        try:
+            landmark = make(*args, **kwargs)
+            if landmark.name in self._found:
+                raise ValueError(f"the name {shortened(landmark.name)} was used before")
+            self._found[landmark.name] = landmark
+        except ValueError as error:
+            self.skip(line, text, str(error))
+
+    def skip(self, line: int, text: str, reason: str) -> None:
+        """Leave a line out, with the reason."""
+        self._skipped.append(SkippedLine(line, text.strip()[:_LONGEST_TEXT], reason))
+
+    def reading(
+        self,
+        name: str,
+        expected: str,
+        *,
+        is_pairs: bool = False,
+        frame: str = "",
+        unit: str = "",
+        notes: Sequence[str] = (),
+    ) -> LandmarkReading:
+        """Sum up.
+
+        Parameters
+        ----------
+        name
+            What the format is called.
+        expected
+            What a line should look like, for the message when no landmark was found.
+        is_pairs, frame, unit, notes
+            As in :class:`LandmarkReading`.
+
+        Raises
+        ------
+        FileFormatError
+            When there is no landmark at all.
+        """
+        skipped = tuple(sorted(self._skipped, key=lambda line: line.line))
+        landmarks = tuple(self._found.values())
+        if not landmarks:
+            reason = f" (line {skipped[0].line}: {skipped[0].reason})" if skipped else ""
+            raise FileFormatError(
+                self._path, f"No landmark could be read{reason}. Expected are {expected}"
+            )
+        unplaced = sum(x.source is None and x.destination is None for x in landmarks)
+        if unplaced:
+            what = "landmark without a position is" if unplaced == 1 else "landmarks have no"
+            tail = "a name" if unplaced == 1 else "position: they are names"
+            notes = (*notes, f"{unplaced} {what} {tail} still to be placed.")
+        return LandmarkReading(landmarks, is_pairs, skipped, name, frame, unit, tuple(notes))
+
+
+def landmark_on(side: Side, name: str, position: Position | None) -> Landmark:
+    r"""Make a landmark of one side, with a name that fits into a line.
+
+    Parameters
+    ----------
+    side
+        Where it lies.
+    name
+        As the file says it.
+    position
+        Where, or None where it is still to be placed.
+
+    Raises
+    ------
+    ValueError
+        When the name is too long to be kept, or a coordinate is not finite.
+
+    Examples
+    --------
+    >>> landmark_on(Side.SOURCE, " lesser\ttrochanter", (1.0, 2.0, 3.0)).name
+    'lesser trochanter'
+    """
+    return Landmark(checked_name(name)).placed(side, position)
+
+
+def checked_name(name: str) -> str:
+    """Return a name as it is kept: on one line, without blanks around it.
+
+    Raises
+    ------
+    ValueError
+        When it is too long to be kept in a session.
+
+    Examples
+    --------
+    >>> checked_name("  left tragus ")
+    'left tragus'
+    """
+    if len(name) > LONGEST_CELL:
+        raise ValueError(f"its name is longer than {LONGEST_CELL:,} characters")
+    return one_line(name).strip()
+
+
+def one_line(text: str) -> str:
+    r"""Replace what cannot stand in a line of text, such as line ends, by blanks.
+
+    Examples
+    --------
+    >>> one_line("left\r\ntragus")
+    'left tragus'
+    """
+    return _NOT_IN_A_LINE.sub(" ", text)
+
+
+def filled_lines(text: str) -> Iterator[tuple[int, str]]:
+    r"""Yield the number and the text of every line that is not blank, counted from 1.
+
+    Examples
+    --------
+    >>> list(filled_lines("Version 1.0\r\n\r\n 2 \r\n"))
+    [(1, 'Version 1.0'), (3, '2')]
+    """
+    for number, line in enumerate(lines_of(text), 1):
+        stripped = line.strip()
+        if stripped:
+            yield number, stripped
+
+
+def three_numbers(words: Sequence[str], missing: str = "") -> Position | None:
+    """Read three words as a position, or None where each of them says that it is missing.
+
+    Parameters
+    ----------
+    words
+        The words.
+    missing
+        What stands for a coordinate that is not there, in lower case; numbers are compared
+        by their value.
+
+    Raises
+    ------
+    ValueError
+        With the reason as its message; a position is never read in part.
+
+    Examples
+    --------
+    >>> three_numbers(["1", "2", "3e1"]), three_numbers(["NA", "NA", "NA"], "na")
+    ((1.0, 2.0, 30.0), None)
+    """
+    if len(words) != 3:
+        raise ValueError(f"it needs three coordinates and has {len(words)}")
+    if missing and all(word.lower() == missing for word in words):
+        return None
+    x, y, z = (number_of(word, ",") for word in words)
+    # 9999 may have decimals.
+    if missing.isdigit() and x == y == z == float(missing):
+        return None
+    return (x, y, z)
