@@ -66,6 +66,19 @@ class NewerFileError(FileFormatError):
     """A session written by a newer pinwarp: refused rather than half-read."""
 
 
+def words_of(error: Exception) -> str:
+    """Return what the user should read about an error.
+
+    Examples
+    --------
+    >>> words_of(PermissionError(13, "Permission denied", "bone.stl"))
+    'bone.stl: Permission denied.'
+    """
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename or 'The file'}: {error.strerror}."
+    return str(error)
+
+
 class PinwarpWarning(UserWarning):
     """A result that can be used but should be looked at."""
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from pinwarp.core.errors import PinwarpError
+from pinwarp.core.errors import PinwarpError, words_of
 from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui.dialogs import Answer
@@ -16,7 +16,6 @@ from pinwarp.gui.file_tasks import (
     SESSION_FILES,
     FileTasks,
     Progress,
-    words_of,
 )
 from pinwarp.gui.jobs import Cancelled
 from pinwarp.gui.recent_files import RecentFiles

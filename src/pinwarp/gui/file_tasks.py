@@ -8,7 +8,7 @@ from typing import Any
 
 from psygnal import Signal
 
-from pinwarp.core.errors import PinwarpError
+from pinwarp.core.errors import PinwarpError, words_of
 from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.jobs import Cancelled, SlowJob
 from pinwarp.io.file_names import SESSION_SUFFIX
@@ -81,10 +81,3 @@ class FileTasks:
         ]
         path = self._editor.path or (files[0] if files else None)
         return path.parent if path is not None else Path.home()
-
-
-def words_of(error: Exception) -> str:
-    """Return what the user should read about an error."""
-    if isinstance(error, OSError) and error.strerror:
-        return f"{error.filename or 'The file'}: {error.strerror}."
-    return str(error)

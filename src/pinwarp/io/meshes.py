@@ -13,7 +13,6 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.io.atomic import atomic_path
 from pinwarp.io.mesh_formats.obj import read_obj, write_obj
 from pinwarp.io.mesh_formats.ply import read_ply, write_ply
-from pinwarp.io.mesh_formats.polydata import write_legacy_vtk, write_vtp
 from pinwarp.io.mesh_formats.stl import read_stl, write_stl
 from pinwarp.io.mesh_formats.surface import BrokenMeshError
 from pinwarp.io.mesh_formats.triangles import mesh_of
@@ -31,12 +30,27 @@ _READERS = {
     ".vtp": read_vtp,
     ".vtk": read_legacy_vtk,
 }
+
+
+def _write_vtp(path: Path, mesh: Mesh) -> None:
+    # VTK is loaded only for what needs it.
+    from pinwarp.io.mesh_formats.polydata import write_vtp
+
+    write_vtp(path, mesh)
+
+
+def _write_legacy_vtk(path: Path, mesh: Mesh) -> None:
+    from pinwarp.io.mesh_formats.polydata import write_legacy_vtk
+
+    write_legacy_vtk(path, mesh)
+
+
 _WRITERS = {
     ".stl": write_stl,
     ".ply": write_ply,
     ".obj": write_obj,
-    ".vtp": write_vtp,
-    ".vtk": write_legacy_vtk,
+    ".vtp": _write_vtp,
+    ".vtk": _write_legacy_vtk,
 }
 
 

@@ -43,6 +43,9 @@ def warped_mesh(session: Session) -> Mesh:
         When there is no source mesh, no pair, or the solve fails; the message says what to do.
     """
     mesh = session.mesh(Side.SOURCE)
+    if mesh is None and session.source is not None:
+        place = session.source.path
+        raise PinwarpError(f"The source mesh {place} is not there. Was it moved or renamed?")
     if mesh is None:
         raise PinwarpError("There is no source mesh to warp: open one first.")
     return mesh.with_vertices(session_spline(session).evaluate(mesh.vertices))
