@@ -22,6 +22,9 @@ from pinwarp.io.mesh_formats.vtp import read_vtp
 from pinwarp.io.reading import read_content
 
 MESH_SUFFIXES = (".stl", ".ply", ".obj", ".vtp", ".vtk")
+# What has room for more than places and triangles.
+NORMALS_SUFFIXES = (".ply", ".obj", ".vtp", ".vtk")
+SCALARS_SUFFIXES = (".ply", ".vtp", ".vtk")
 
 _READERS = {
     ".stl": read_stl,
@@ -32,17 +35,17 @@ _READERS = {
 }
 
 
-def _write_vtp(path: Path, mesh: Mesh) -> None:
+def _write_vtp(path: Path, mesh: Mesh, extras: VertexData) -> None:
     # VTK is loaded only for what needs it.
     from pinwarp.io.mesh_formats.polydata import write_vtp
 
-    write_vtp(path, mesh)
+    write_vtp(path, mesh, extras)
 
 
-def _write_legacy_vtk(path: Path, mesh: Mesh) -> None:
+def _write_legacy_vtk(path: Path, mesh: Mesh, extras: VertexData) -> None:
     from pinwarp.io.mesh_formats.polydata import write_legacy_vtk
 
-    write_legacy_vtk(path, mesh)
+    write_legacy_vtk(path, mesh, extras)
 
 
 _WRITERS = {
