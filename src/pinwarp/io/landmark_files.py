@@ -30,6 +30,7 @@ __all__ = [
     "LandmarkFormat",
     "LandmarkReading",
     "SkippedLine",
+    "format_of",
     "read_landmarks",
     "write_landmarks",
 ]
@@ -163,12 +164,41 @@ def _format_by_suffix(path: str | Path) -> LandmarkFormat | None:
     return max(found, key=lambda item: item[0])[1] if found else None
 
 
+def format_of(path: str | Path) -> LandmarkFormat:
+    """Return the format a file is written in, by its suffix.
+
+    Parameters
+    ----------
+    path
+        The file; the longest suffix counts.
+
+    Raises
+    ------
+    FileFormatError
+        When the suffix is that of no format.
+
+    Examples
+    --------
+    >>> format_of("femur.csv").NAME, format_of("femur.bigwarp.csv").NAME
+    ('OpenSim Creator CSV', 'BigWarp CSV')
+    """
+    known = _format_by_suffix(path)
+    if known is None:
+        raise FileFormatError(
+            path,
+            f"Landmarks of the type {Path(path).suffix or 'without a suffix'!r} are not "
+            f"supported. Choose one of {', '.join(LANDMARK_SUFFIXES)}.",
+        )
+    return known
+
+
 def write_landmarks(
     path: str | Path,
     landmarks: Iterable[Landmark],
     side: Side | None,
     *,
     unit: str = "",
+    known: LandmarkFormat | None = None,
 ) -> tuple[str, ...]:
     r"""Write landmarks in the format of the file's suffix, all of them or nothing.
 
@@ -183,6 +213,8 @@ def write_landmarks(
     unit
         The unit the positions are in, for formats that are in millimetres (3D Slicer's); the
         others have no unit and get the numbers as they are.
+    known
+        The format; without it, that of the file's suffix.
 
     Returns
     -------
@@ -206,13 +238,7 @@ def write_landmarks(
     ...     path.read_text()
     'LM3=1\n1.0 2.0 3.0\nID=femur\n'
     """
-    known = _format_by_suffix(path)
-    if known is None:
-        raise FileFormatError(
-            path,
-            f"Landmarks of the type {Path(path).suffix or 'without a suffix'!r} are not "
-            f"supported. Choose one of {', '.join(LANDMARK_SUFFIXES)}.",
-        )
+    known = known or format_of(path)
     if side is None and not known.HOLDS_PAIRS:
         both = ", ".join(x.SUFFIXES[0] for x in reversed(FORMATS) if x.HOLDS_PAIRS)
         raise FileFormatError(
