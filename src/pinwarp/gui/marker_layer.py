@@ -38,6 +38,10 @@ class MarkerLayer(QWidget):
         self.unit = ""
         self.radius = RADIUS
         self.painted_for: object = None
+        # For a picture: signs in so many pixels, places seen from its middle, with a frame or not.
+        self.pixels_per_pixel = 1.0
+        self.offset = (0.0, 0.0)
+        self.framed = True
         self._markers: tuple[Marker, ...] = ()
         # Which places the bone hides, as long as the camera stands still.
         self._hidden: dict[Position, bool] = {}
@@ -59,7 +63,8 @@ class MarkerLayer(QWidget):
         """Return where the landmarks are on the screen: (n, 2) logical pixels."""
         if not self._markers:
             return np.zeros((0, 2))
-        return self._canvas.project(np.array([marker.position for marker in self._markers]))
+        places = self._canvas.project(np.array([marker.position for marker in self._markers]))
+        return places + self.offset
 
     def hidden(self) -> NDArray[np.bool_]:
         """Return which landmarks lie behind the surface as the camera stands now."""
@@ -87,8 +92,9 @@ class MarkerLayer(QWidget):
         self.painted_for = self._canvas.view_key()
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        self._paint_title(painter)
-        if self._canvas.bone is not None:
+        if self.framed:
+            self._paint_title(painter)
+        if self.framed and self._canvas.bone is not None:
             length = self._canvas.unit_per_pixel
             paint_scale_bar(painter, QRectF(self.rect()), length, self.unit)
         if self.hint:
@@ -145,7 +151,7 @@ class MarkerLayer(QWidget):
 
     def _paint_markers(self, painter: QPainter) -> None:
         places, hidden = self.places(), self.hidden()
-        ratio = self.devicePixelRatioF()
+        ratio = self.devicePixelRatioF() * self.pixels_per_pixel
         # Hidden ones first, selected ones last, so that what matters lies on top.
         order = sorted(
             range(len(self._markers)),

@@ -100,10 +100,8 @@ def warped_mesh_data(
     columns = _in_parts(
         derivatives, source.vertices, lambda share: progress(0.5 + 0.2 * share, "measuring stretch")
     )
-    for name, column in zip(
-        ("det_j", "largest_stretch", "smallest_stretch"), columns.T, strict=True
-    ):
-        found[name] = column
+    names = ("det_j", "largest_stretch", "smallest_stretch")
+    found |= dict(zip(names, columns.T, strict=True))
     prediction = _prediction(session, warp)
     if prediction is not None:
         found[f"deviation{unit}"] = _in_parts(
