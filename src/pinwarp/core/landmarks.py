@@ -16,7 +16,13 @@ Position = tuple[float, float, float]
 
 
 class Side(StrEnum):
-    """Which of the two meshes a position is on."""
+    """Which of the two meshes a position is on.
+
+    Examples
+    --------
+    >>> Side.SOURCE.other.value
+    'destination'
+    """
 
     SOURCE = "source"
     DESTINATION = "destination"
@@ -28,7 +34,13 @@ class Side(StrEnum):
 
 
 class Role(StrEnum):
-    """What a landmark is for."""
+    """What a landmark is for: a pair is solved for, a passenger only carried along.
+
+    Examples
+    --------
+    >>> Landmark("muscle_insertion", source=(1, 2, 3), role=Role.PASSENGER).is_pair
+    False
+    """
 
     PAIR = "pair"
     PASSENGER = "passenger"

@@ -73,6 +73,13 @@ class MeshFile:
         What was changed or left out, as sentences for the user.
     mirrored
         The axes across which the mesh was mirrored after reading, such as ``"x"``.
+
+    Examples
+    --------
+    >>> from pinwarp.io.samples import assets_folder
+    >>> file = read_mesh(assets_folder() / "femur_generic.ply")
+    >>> file.path.name, len(file.mesh.vertices), file.notes
+    ('femur_generic.ply', 10000, ())
     """
 
     path: Path

@@ -102,6 +102,14 @@ class Check:
         What was noticed, the flagged first.
     notes
         What was noticed about the files.
+
+    Examples
+    --------
+    >>> from pinwarp.io.samples import sample_session
+    >>> from pinwarp.session.files import read_session
+    >>> checked = check(read_session(sample_session()))
+    >>> checked.pairs[0].name, round(checked.distance.mean, 2), checked.as_json()["flagged"]
+    ('fovea_capitis', 0.73, False)
     """
 
     pairs: tuple[PairFigures, ...]

@@ -45,6 +45,14 @@ def warped_mesh(session: Session) -> Mesh:
     ------
     PinwarpError
         When there is no source mesh, no pair, or the solve fails; the message says what to do.
+
+    Examples
+    --------
+    >>> from pinwarp.io.samples import sample_session
+    >>> from pinwarp.session.files import read_session
+    >>> session = read_session(sample_session())
+    >>> warped_mesh(session).vertices.shape
+    (10000, 3)
     """
     mesh = session.mesh(Side.SOURCE)
     if mesh is None and session.source is not None:
@@ -62,6 +70,13 @@ def warped_passengers(session: Session) -> tuple[Landmark, ...]:
     ------
     PinwarpError
         When there is no passenger, no pair, or the solve fails; the message says what to do.
+
+    Examples
+    --------
+    >>> apex = Landmark("apex", source=(0, 0, 0), destination=(0, 0, 5))
+    >>> muscle = Landmark("muscle", source=(1, 0, 0), role=Role.PASSENGER)
+    >>> warped_passengers(Session(landmarks=(apex, muscle)))[0].destination
+    (1.0, 0.0, 5.0)
     """
     passengers = [x for x in session.landmarks if x.role is Role.PASSENGER and x.source is not None]
     if not passengers:

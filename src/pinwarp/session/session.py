@@ -37,6 +37,13 @@ class Session:
         The unit of the meshes, for display.
     unknown
         Header lines of the session file that this version does not know.
+
+    Examples
+    --------
+    >>> apex = Landmark("apex", source=(0, 0, 0), destination=(0, 0, 5))
+    >>> session = Session(landmarks=(apex, Landmark("tip")), unit="mm")
+    >>> [pair.name for pair in session.pairs]
+    ['apex']
     """
 
     source: MeshFile | MeshReference | None = None
