@@ -1,4 +1,4 @@
-"""Animations: the destination's view turned round, or the way from the aligned source to the warp."""
+"""Animations: the view turned round, or the way from the aligned source to the warp."""
 
 from __future__ import annotations
 
@@ -137,9 +137,12 @@ def animation_steps(order: AnimationOrder, view: Canvas, ends: Ends | None = Non
     try:
         moves = _turns(order, copy) if ends is None else _blends(order, copy, ends)
         frames = []
-        for number, _moved in enumerate(moves, start=1):
-            frames.append(over_background(copy.frame(order.width, order.height)))
-            yield number / order.frames, f"rendering {number} of {order.frames}"
+        for number, _moved in enumerate(moves):
+            frame: Pixels = np.zeros((order.height, order.width, 4), np.uint8)
+            for tile in copy.tiles(order.width, order.height):
+                tile.put_into(frame)
+                yield (number + tile.share) / order.frames, f"rendering {number + 1}"
+            frames.append(over_background(frame))
         return frames
     except MemoryError as error:
         raise PinwarpError(

@@ -28,6 +28,7 @@ from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Documents
 from pinwarp.gui.exports import Exports
 from pinwarp.gui.file_tasks import FileTasks
+from pinwarp.gui.file_warping import FileWarping
 from pinwarp.gui.guidance import Guidance
 from pinwarp.gui.guide_bar import GuideBar
 from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY
@@ -36,11 +37,13 @@ from pinwarp.gui.landmark_panel import LandmarkPanel
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
 from pinwarp.gui.menus import fill_toolbar, make_menus, shortcut_groups
 from pinwarp.gui.penalty_panel import PenaltyPanel
+from pinwarp.gui.picture_export import PictureExport
 from pinwarp.gui.presenter import Presenter
 from pinwarp.gui.quality_presenter import QualityPresenter
 from pinwarp.gui.recent_files import RecentFiles
 from pinwarp.gui.report_export import ReportExport
 from pinwarp.gui.shortcut_overlay import ShortcutOverlay
+from pinwarp.gui.stepped_job import SteppedJob
 from pinwarp.gui.table_presenter import TablePresenter
 from pinwarp.gui.view_controls import ViewControls
 from pinwarp.gui.viewport import Viewport
@@ -69,6 +72,7 @@ class MainWindow(QMainWindow):
         self.table = LandmarkTable(self.model)
         self.panel = PenaltyPanel()
         self.jobs = SlowJob(self)
+        self.stepped = SteppedJob(self)
         self.actions_by_key = make_actions(self)
         self.landmarks = LandmarkPanel(self.table, self.actions_by_key)
         self._dialogs = dialogs or Dialogs(self)
@@ -81,11 +85,13 @@ class MainWindow(QMainWindow):
         self.view_controls.add_to(self.findChild(QToolBar, "tools"))
         self.warp_presenter = WarpPresenter(self.editor, self.actions_by_key, self)
         self.statusBar().addPermanentWidget(self.warp_presenter.note)
-        self._tasks = FileTasks(self.editor, self.jobs, self._dialogs)
+        self._tasks = FileTasks(self.editor, self.jobs, self.stepped, self._dialogs)
         self.documents = Documents(
             self.editor, self._tasks, self._recent, self.presenter.keep_surface
         )
         self.exports = Exports(self.editor, self._tasks)
+        self._pictures = PictureExport(self.editor, self._tasks, self.viewports, self)
+        self._file_warping = FileWarping(self.editor, self._tasks)
         self._report_export = ReportExport(
             self.editor, self._tasks, self.viewports, lambda: self.documents.name
         )
@@ -218,7 +224,13 @@ class MainWindow(QMainWindow):
             "set_nudge": self.guidance.ask_nudge,
             "set_pattern": self.guidance.ask_pattern,
             "load_template": self.guidance.load_template,
-            "export_passengers": self.exports.export_passengers,
+            "export_passengers": lambda: self.exports.export_warped(passengers=True),
+            "export_warped": lambda: self.exports.export_warped(passengers=False),
+            "export_coefficients": self.exports.export_coefficients,
+            "export_script": self.exports.export_script,
+            "export_picture": self._pictures.ask_for_picture,
+            "export_animation": self._pictures.ask_for_animation,
+            "warp_files": self._file_warping.ask_and_warp,
             "shortcuts": self.shortcuts.toggle,
             "select_none": editor.select,
             "about": lambda: self._dialogs.tell("About pinwarp", ABOUT),
@@ -237,10 +249,11 @@ class MainWindow(QMainWindow):
             viewport.files_dropped.connect(
                 lambda paths, side=side: documents.open_files(side, paths)
             )
-        self.jobs.started.connect(self._on_job_started)
-        self.jobs.progressed.connect(self._on_job_progressed)
-        self.jobs.ended.connect(self._on_job_ended)
-        self.cancel.clicked.connect(self.jobs.cancel)
+        for jobs in (self.jobs, self.stepped):
+            jobs.started.connect(self._on_job_started)
+            jobs.progressed.connect(self._on_job_progressed)
+            jobs.ended.connect(self._on_job_ended)
+            self.cancel.clicked.connect(jobs.cancel)
         self._tasks.said.connect(self._say)
         editor.session_changed.connect(self._on_session)
         editor.selection_changed.connect(self._on_session)
@@ -291,10 +304,13 @@ class MainWindow(QMainWindow):
         for key in ("delete_side", "delete_landmark", "select_none"):
             actions[key].setEnabled(has_selection)
         session = editor.session
-        actions["export_mesh"].setEnabled(
-            session.mesh(Side.SOURCE) is not None and bool(session.pairs)
-        )
-        actions["export_report"].setEnabled(bool(session.pairs))
+        has_mesh = {side: session.mesh(side) is not None for side in Side}
+        for key in ("export_mesh", "export_script"):
+            actions[key].setEnabled(has_mesh[Side.SOURCE] and bool(session.pairs))
+        for key in ("export_report", "export_warped", "export_coefficients", "warp_files"):
+            actions[key].setEnabled(bool(session.pairs))
+        actions["export_picture"].setEnabled(any(has_mesh.values()))
+        actions["export_animation"].setEnabled(any(has_mesh.values()))
         self.guidance.show()
 
     def _on_view(self, _changed: object = None) -> None:
@@ -319,13 +335,15 @@ class MainWindow(QMainWindow):
         self.progress.setFormat(f"{stage} – %p%")
 
     def _on_job_ended(self) -> None:
-        self.progress.hide()
-        self.cancel.hide()
+        if self.jobs.is_idle and self.stepped.is_idle:
+            self.progress.hide()
+            self.cancel.hide()
 
     @property
     def is_settled(self) -> bool:
         """Whether everything asked for is done and shown."""
-        return self.jobs.is_idle and self.presenter.is_settled and self.quality.is_settled
+        jobs_are_done = self.jobs.is_idle and self.stepped.is_idle
+        return jobs_are_done and self.presenter.is_settled and self.quality.is_settled
 
     # The end
 
@@ -343,6 +361,7 @@ class MainWindow(QMainWindow):
         self._settings.setValue("geometry", self.saveGeometry())
         self._settings.setValue("layout", self.saveState())
         self.jobs.shut_down()
+        self.stepped.shut_down()
         self.quality.shut_down()
         self.presenter.shut_down()
         self.table_presenter.shut_down()

@@ -53,6 +53,12 @@ class Tile:
     pixels: Pixels
     share: float
 
+    def put_into(self, picture: Pixels) -> None:
+        """Write it where it belongs into a (height, width, 4) picture."""
+        rows, columns = self.pixels.shape[:2]
+        here = picture[self.top : self.top + rows, self.left : self.left + columns]
+        here[:] = self.pixels[: here.shape[0], : here.shape[1]]
+
 
 class Offscreen:
     """Renders what a canvas shows; to be closed.
@@ -130,7 +136,7 @@ class Offscreen:
         scale = self.scale_for(width, height)
         for look, line_width in self._lines:
             look.SetLineWidth(max(1.0, line_width * scale))
-        across, down = min(self._tile, width), min(self._tile, height)
+        across, down = (_share(length, self._tile) for length in (width, height))
         window.SetSize(across, down)
         # In logical pixels, and so of more than the window where the picture's shape is another.
         part = down / scale / self._view[1]
@@ -147,15 +153,6 @@ class Offscreen:
             window.Render()
             yield Tile(left, top, _read(window, across, down), done / len(corners))
 
-    def frame(self, width: int, height: int) -> Pixels:
-        """Return a small picture at once, (height, width, 4) premultiplied RGBA."""
-        picture: Pixels = np.zeros((height, width, 4), np.uint8)
-        for tile in self.tiles(width, height):
-            rows, columns = tile.pixels.shape[:2]
-            here = picture[tile.top : tile.top + rows, tile.left : tile.left + columns]
-            here[:] = tile.pixels[: here.shape[0], : here.shape[1]]
-        return picture
-
     def close(self) -> None:
         """Let go of the graphics."""
         if self._window is not None:
@@ -164,9 +161,14 @@ class Offscreen:
             self._window = None
 
 
+def _share(length: int, most: int) -> int:
+    """Return the length of equal parts that are no longer than allowed."""
+    return math.ceil(length / math.ceil(length / most))
+
+
 def _read(window: vtkRenderWindow, width: int, height: int) -> Pixels:
     colours = vtkUnsignedCharArray()
-    window.GetRGBACharPixelData(0, 0, width - 1, height - 1, 0, colours)
+    window.GetRGBACharPixelData(0, 0, width - 1, height - 1, 0, colours, 0)
     if colours.GetNumberOfTuples() != width * height:
         raise MemoryError("The graphics could not render a picture of this size.")
     # VTK begins at the lower edge.

@@ -86,4 +86,4 @@ def durations(count: int, seconds: float) -> list[int]:
     ([30, 40, 30], 4000)
     """
     ends = np.round(np.linspace(0, 100 * seconds, count + 1)).astype(int)
-    return (10 * np.diff(ends)).tolist()
+    return [10 * int(hundredths) for hundredths in np.diff(ends)]

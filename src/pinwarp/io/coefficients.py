@@ -116,8 +116,9 @@ def write_coefficients(path: str | Path, coefficients: Coefficients) -> None:
         if suffix == ".json":
             temporary.write_text(_json(fields), encoding="utf-8")
         else:
+            arrays: dict[str, Any] = {key: np.array(value) for key, value in fields.items()}
             with temporary.open("wb") as file:
-                np.savez(file, **{key: np.array(value) for key, value in fields.items()})
+                np.savez(file, **arrays)
 
 
 def read_coefficients(path: str | Path) -> Coefficients:
@@ -213,7 +214,8 @@ def _read_json(path: Path) -> dict[str, Any]:
 
 def _read_npz(path: Path) -> dict[str, Any]:
     # Without pickles: a file from a stranger must not run code.
-    with np.load(path, allow_pickle=False) as file:
+    with path.open("rb") as content:
+        file = np.load(content, allow_pickle=False)
         if not isinstance(file, np.lib.npyio.NpzFile):
             raise ValueError("it holds a single array")
         return {key: file[key].tolist() for key in file.files}

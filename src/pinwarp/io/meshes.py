@@ -48,7 +48,7 @@ def _write_legacy_vtk(path: Path, mesh: Mesh, extras: VertexData) -> None:
     write_legacy_vtk(path, mesh, extras)
 
 
-_WRITERS = {
+_WRITERS: dict[str, Callable[[Path, Mesh, VertexData], None]] = {
     ".stl": write_stl,
     ".ply": write_ply,
     ".obj": write_obj,

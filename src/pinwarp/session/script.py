@@ -43,90 +43,72 @@ def script_of(session: Session, folder: Path) -> str:
         raise PinwarpError("There is no source mesh to warp: open one first.")
     if not session.pairs:
         raise PinwarpError("There is no pair yet: place a landmark on both meshes first.")
-    whole = session.components is Components.FULL and session.blend == 1 and not session.planar
-    imports, warp = _whole(session) if whole else _in_part(session)
-    path, mirrored = session.source.path, session.source.mirrored
-    if mirrored:
-        imports.append("from pinwarp.core.mirror import mirrored_mesh")
-        mesh = f'mesh = mirrored_mesh(file.mesh, "{mirrored}")  # as the session sees it'
-    else:
-        mesh = "mesh = file.mesh"
-    imports.append("from pinwarp.io.meshes import read_mesh, write_mesh")
-    unit = " ".join(session.unit.split())
-    penalty, warped = session.warping_penalty, f"{path.stem}_warped{path.suffix}"
-    number = 'float("inf")' if math.isinf(penalty) else repr(penalty)
-    lines = [
-        f'"""Warp a mesh as pinwarp {pinwarp.__version__} did: {applied_in_words(session)}, '
-        f'{len(session.pairs)} pairs."""',
-        "",
-        "from pathlib import Path",
-        "",
-        "import numpy as np",
-        "",
-        *sorted(imports),
-        "",
-        "HERE = Path(__file__).resolve().parent",
-        f"SOURCE_MESH = HERE / {_relative(path, folder)!r}",
-        f"SOURCE_SHA256 = {session.source.sha256!r}",
-        f"WARPED_MESH = HERE / {warped!r}",
-        "",
-        f"PENALTY = {number}  # {unit}",
-        "# name: (source, destination)",
-        "PAIRS = {",
-        *(f"    {pair.name!r}: ({pair.source!r}, {pair.destination!r})," for pair in session.pairs),
-        "}",
-        "",
-        "source, destination = np.array(list(PAIRS.values())).swapaxes(0, 1)",
-        *warp,
-        "",
-        "file = read_mesh(SOURCE_MESH)",
-        "if file.sha256 != SOURCE_SHA256:",
-        '    print(f"{SOURCE_MESH} is not the file that the landmarks were placed on.")',
-        mesh,
-        "write_mesh(WARPED_MESH, mesh.with_vertices(warp(mesh.vertices)))",
-        'print(f"Wrote {WARPED_MESH}")',
+    path = session.source.path
+    warped = f"{path.stem}_warped{path.suffix}"
+    pairs = [
+        f"    {pair.name!r}: ({pair.source!r}, {pair.destination!r})," for pair in session.pairs
     ]
-    return "\n".join(lines) + "\n"
-
-
-def _whole(session: Session) -> tuple[list[str], list[str]]:
-    """Return imports and statements for the warp as it is solved."""
-    return (
-        ["from pinwarp.tps3d import PenaltyConvention, solve_coefficients"],
+    mirror, imports = _mirrored(session.source.mirrored)
+    return "\n".join(
         [
-            "warp = solve_coefficients(",
-            "    source,",
-            "    destination,",
-            "    warping_penalty=PENALTY,",
-            f"    convention=PenaltyConvention.{session.convention.name},",
-            ").warp_points",
-        ],
-    )
-
-
-def _in_part(session: Session) -> tuple[list[str], list[str]]:
-    """Return imports and statements for what is applied of the warp."""
-    planar = ", planar=True" if session.planar else ""
-    return (
-        [
-            "from pinwarp.core.components import Components, applied",
-            "from pinwarp.core.factor import factorise",
-            "from pinwarp.core.spline import PenaltyConvention, solve",
-        ],
-        [
-            f"factor = factorise(source{planar})",
-            "whole = solve(",
-            f"    factor, destination, PENALTY, PenaltyConvention.{session.convention.name}",
+            f'"""Warp a mesh as pinwarp {pinwarp.__version__} did: {applied_in_words(session)}, '
+            f'{len(pairs)} pairs."""',
+            "",
+            *imports,
+            "from pathlib import Path",
+            "",
+            "import pinwarp",
+            *(["from pinwarp.core.mirror import mirrored_mesh"] if mirror else []),
+            "",
+            "HERE = Path(__file__).resolve().parent",
+            f"SOURCE_MESH = HERE / {_relative(path, folder)!r}",
+            f"SOURCE_SHA256 = {session.source.sha256!r}",
+            f"WARPED_MESH = HERE / {warped!r}",
+            "",
+            f"# name: (source, destination), in {' '.join(session.unit.split())}",
+            "PAIRS = {",
+            *pairs,
+            "}",
+            "",
+            "mesh = pinwarp.read_mesh(SOURCE_MESH)",
+            "if mesh.sha256 != SOURCE_SHA256:",
+            '    print(f"{SOURCE_MESH} is not the file that the landmarks were placed on.")',
+            *mirror,
+            "session = pinwarp.Session(",
+            "    source=mesh,",
+            "    landmarks=tuple(pinwarp.Landmark(name, *pair) for name, pair in PAIRS.items()),",
+            *(f"    {option}," for option in _options(session)),
             ")",
-            "warp = applied(",
-            "    whole,",
-            "    factor,",
-            "    destination,",
-            f"    Components.{session.components.name},",
-            f"    blend={session.blend!r},",
-            ").evaluate",
-        ],
+            "pinwarp.write_mesh(WARPED_MESH, pinwarp.warped_mesh(session))",
+            'print(f"Wrote {WARPED_MESH}")',
+            "",
+        ]
     )
+
+
+def _mirrored(axes: str) -> tuple[list[str], list[str]]:
+    """Return what mirrors the mesh as the session sees it, and an import for that."""
+    if not axes:
+        return [], []
+    mirror = f'mesh = replace(mesh, mesh=mirrored_mesh(mesh.mesh, "{axes}"))'
+    return [mirror], ["from dataclasses import replace"]
+
+
+def _options(session: Session) -> list[str]:
+    """Return how the warp is solved and applied; what is usual goes without saying."""
+    penalty = session.warping_penalty
+    number = 'float("inf")' if math.isinf(penalty) else repr(penalty)
+    options = [
+        f"warping_penalty={number}",
+        f"convention=pinwarp.PenaltyConvention.{session.convention.name}",
+    ]
+    if session.planar:
+        options.append("planar=True")
+    if session.components is not Components.FULL:
+        options.append(f"components=pinwarp.Components.{session.components.name}")
+    if session.blend != 1:
+        options.append(f"blend={session.blend!r}")
+    return options
 
 
 def _relative(path: Path, folder: Path) -> str:
