@@ -298,7 +298,7 @@ def test_a_window_may_be_closed_while_an_animation_is_rendered(sample, tmp_path)
 
 def test_more_than_gif_can_show_is_refused_before_the_work(sample):
     dialog = dialog_of(sample, "export_animation", AnimationDialog)
-    type_into(dialog.frames, 300)
+    type_into(dialog.frames, 250)
     assert "at most 50 frames a second" in dialog.note.text()
     assert not dialog.export.isEnabled()
     type_into(dialog.seconds, 10)
