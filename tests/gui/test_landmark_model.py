@@ -63,7 +63,11 @@ def test_only_the_rows_that_differ_are_announced(model, changes):
     changes.clear()
     model.show_values("residual", {"d": 1.0})
     column = column_number("residual")
-    assert changes == [("changed", 3, 3, column, column)]
+    of_row, of_bars = ("changed", 3, 3, column, column), ("changed", 0, 7, column, column)
+    assert changes == [of_row, of_bars], "all bars are measured by the longest"
+    changes.clear()
+    model.show_values("residual", {"d": 1.0, "e": 0.5})
+    assert changes == [("changed", 4, 4, column, column)]
 
 
 def test_rows_come_go_and_move_without_a_reset(model, changes):

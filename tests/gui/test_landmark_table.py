@@ -461,7 +461,8 @@ def test_no_title_is_cut(four):
     for section, column in enumerate(COLUMNS):
         option.rect = QRect(0, 0, header.sectionSize(section), header.height())
         room = style.subElementRect(QStyle.SubElement.SE_HeaderLabel, option, header)
-        needed = 16 if column.header_icon else header.fontMetrics().horizontalAdvance(column.title)
+        words = column.short_title or column.title
+        needed = 16 if column.header_icon else header.fontMetrics().horizontalAdvance(words)
         assert room.width() >= needed, column.title
 
 

@@ -157,6 +157,21 @@ def test_names_stand_beside_the_landmarks_in_front(sample, tmp_path):
     assert np.isfinite(layer.places()).all()
 
 
+def test_arrows_and_the_grid_are_in_the_picture_where_the_window_shows_them(sample, tmp_path):
+    size = {"view": 2, "off": ("names",)}
+    plain = picture(sample, tmp_path / "a.png", 800, 600, **size).astype(int)
+    sample.trigger("grid_box")
+    gridded = picture(sample, tmp_path / "b.png", 800, 600, **size).astype(int)
+    assert apart(plain, gridded) > 0.01
+    sample.editor.commit(edits.set_penalty(sample.session, 50.0), "Change penalty")
+    sample.settle()
+    before = picture(sample, tmp_path / "c.png", 800, 600, **size).astype(int)
+    sample.trigger("arrows")
+    assert sample.window.viewports[DESTINATION].layer.arrows
+    after = picture(sample, tmp_path / "d.png", 800, 600, **size).astype(int)
+    assert apart(before, after) > 0.0005
+
+
 def test_the_session_may_go_on_while_a_picture_is_rendered(sample, tmp_path):
     """The picture is of the moment when it was ordered."""
     quiet = {"view": 2, "off": ("framed",)}

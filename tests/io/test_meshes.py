@@ -1,7 +1,10 @@
 from __future__ import annotations
 
+import base64
 import hashlib
+import itertools
 import struct
+import tracemalloc
 from pathlib import Path
 from random import Random
 
@@ -419,6 +422,87 @@ def test_a_damaged_file_is_refused_with_the_reason(
     assert str(caught.value).startswith(name)
     assert str(caught.value).endswith(".")
     assert capfd.readouterr() == ("", "")
+
+
+BILLION = 1_000_000_000
+ZLIB = ' compressor="vtkZLibDataCompressor"'
+
+
+def ply(kind: str, vertices: int, faces: int, count: str = "uchar") -> str:
+    return (
+        f"ply\nformat {kind} 1.0\nelement vertex {vertices}\nproperty double x\n"
+        f"property double y\nproperty double z\nelement face {faces}\n"
+        f"property list {count} int vertex_indices\nend_header\n"
+    )
+
+
+def vtk(kind: str, rest: str, version: str = "3.0") -> str:
+    return f"# vtk DataFile Version {version}\na\n{kind}\nDATASET POLYDATA\n{rest}\n"
+
+
+def vtp(data: str, kind: str = "binary", more: str = "") -> str:
+    return (
+        f'<VTKFile type="PolyData" byte_order="LittleEndian" header_type="UInt64"{more}>'
+        f'<PolyData><Piece NumberOfPoints="{BILLION}" NumberOfPolys="{BILLION}"><Points>'
+        f'<DataArray type="Float64" format="{kind}">{data}</DataArray></Points></Piece></PolyData>'
+        "</VTKFile>"
+    )
+
+
+def blocks(*numbers: int) -> str:
+    """A header of compressed blocks, and two bytes of data."""
+    return base64.b64encode(struct.pack(f"<{len(numbers)}Q", *numbers) + b"xx").decode()
+
+
+LITTLE, BIG = "binary_little_endian", "binary_big_endian"
+POINTS = f"POINTS {BILLION} double\n0 0 0"
+POLYGONS = f"POINTS 0 double\n\nPOLYGONS {BILLION} {4 * BILLION}\n"
+OFFSETS = POLYGONS + "OFFSETS vtktypeint64\n0 3"
+FIELD = f"FIELD FieldData 1\na {BILLION} {BILLION} double\n0 0"
+LAUGHS = "".join(
+    f'<!ENTITY {after} "{f"&{before};" * 10}">'
+    for before, after in itertools.pairwise("abcdefghij")
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("count.stl", b" " * 80 + struct.pack("<I", BILLION) + bytes(900)),
+        *((f"{kind}-vertices.ply", ply(kind, BILLION, 1)) for kind in ("ascii", LITTLE, BIG)),
+        *((f"{kind}-faces.ply", ply(kind, 0, BILLION)) for kind in ("ascii", LITTLE, BIG)),
+        (
+            "corners.ply",
+            ply(LITTLE, 0, 1, "uint").encode() + struct.pack("<I", BILLION) + bytes(500),
+        ),
+        ("ascii-corners.ply", ply("ascii", 0, 1, "uint") + f"{BILLION} 0 1 2\n"),
+        ("index.obj", SQUARE_OBJ + f"f 1 2 {BILLION}\n"),
+        ("negative.obj", SQUARE_OBJ + f"f 1 2 -{BILLION}\n"),
+        *((f"{kind}-points.vtk", vtk(kind, POINTS)) for kind in ("ASCII", "BINARY")),
+        *((f"{kind}-polygons.vtk", vtk(kind, POLYGONS + "3 0")) for kind in ("ASCII", "BINARY")),
+        *((f"{kind}-offsets.vtk", vtk(kind, OFFSETS, "5.1")) for kind in ("ASCII", "BINARY")),
+        *((f"{kind}-field.vtk", vtk(kind, FIELD)) for kind in ("ASCII", "BINARY")),
+        ("ascii.vtp", vtp("0 0 0", "ascii")),
+        ("length.vtp", vtp(blocks(8 * BILLION))),
+        ("blocks.vtp", vtp(blocks(BILLION, 8, 8, 8), more=ZLIB)),
+        ("block.vtp", vtp(blocks(1, 24 * BILLION, 0, 2), more=ZLIB)),
+        ("laughs.vtp", f'<!DOCTYPE a [<!ENTITY a "0 ">{LAUGHS}]>' + vtp("&j;", "ascii")),
+    ],
+    ids=lambda value: value if isinstance(value, str) and len(value) < 40 else "",
+)
+def test_a_small_file_that_announces_billions_is_refused_at_once(
+    tmp_path: Path, name: str, content: bytes | str
+) -> None:
+    path = write(tmp_path, name, content)
+    assert path.stat().st_size < 1500
+    tracemalloc.start()
+    try:
+        with pytest.raises(FileFormatError) as caught:
+            read_mesh(path)
+        assert tracemalloc.get_traced_memory()[1] < 10 << 20
+    finally:
+        tracemalloc.stop()
+    assert str(caught.value).startswith(name)
 
 
 @pytest.mark.parametrize("number", [np.nan, np.inf])

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from tests.core.femur import femur_landmarks
 
+from pinwarp.core.alignment import fit_similarity
+from pinwarp.core.components import Components
+from pinwarp.core.factor import factorise
 from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import Landmark, as_position
-from pinwarp.core.spline import PenaltyConvention
+from pinwarp.core.spline import PenaltyConvention, solve
 from pinwarp.session.quality import quality_of
 from pinwarp.session.results import WarpInputs, WarpSolver
 from pinwarp.session.session import Session
@@ -35,6 +39,10 @@ def made_up(count, seed=0):
     rng = np.random.default_rng(seed)
     source = 50 * rng.normal(size=(count, 3))
     return source, source * [1.1, 0.9, 1.0] + 4 * np.sin(source / 30) + rng.normal(size=(count, 3))
+
+
+def rms(a, b):
+    return float(np.sqrt(np.mean(np.sum((a - b) ** 2, axis=1))))
 
 
 @pytest.fixture
@@ -122,3 +130,25 @@ def test_the_affine_part_and_the_energy_are_those_of_the_warp():
     assert judged.affine.scales == pytest.approx([2, 1, 1])
     assert judged.energy == pytest.approx(np.zeros(3), abs=1e-6)
     assert quality(session_of(*made_up(14))).energy.min() > 0.1
+
+
+def test_each_part_of_the_warp_leaves_what_its_own_fit_leaves():
+    source, destination = made_up(14)
+    penalty = 5.0
+    left = quality(session_of(source, destination, warping_penalty=penalty)).rms_by_components
+    factor = factorise(source)
+    for part, mapped in (
+        (Components.FULL, solve(factor, destination, penalty).evaluate(source)),
+        (Components.WITHOUT_POSE, solve(factor, destination, penalty).evaluate(source)),
+        (Components.AFFINE, solve(factor, destination, math.inf).evaluate(source)),
+        (Components.SIMILARITY, fit_similarity(source, destination).apply(source)),
+        (Components.RIGID, fit_similarity(source, destination, scaling=False).apply(source)),
+    ):
+        assert left[part] == pytest.approx(rms(mapped, destination)), part
+
+
+def test_what_is_left_grows_from_the_full_warp_to_the_rigid_fit(femur):
+    names, source, destination = femur
+    left = quality(session_of(source, destination, names)).rms_by_components
+    order = (Components.FULL, Components.AFFINE, Components.SIMILARITY, Components.RIGID)
+    assert [round(left[part], 1) for part in order] == [0.0, 11.0, 11.1, 29.6]

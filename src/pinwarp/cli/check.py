@@ -65,7 +65,7 @@ def _print(console: Console, name: str, session: Session, checked: checking.Chec
     pairs = Table("Pair", title=f"{name}: {len(checked.pairs)} pairs, lengths in {unit}")
     for column in ("Residual", "Left out", "Standardised"):
         pairs.add_column(column, justify="right")
-    named = {name for remark in checked.remarks if remark.is_flagged for name in remark.landmarks}
+    named = {name for x in checked.findings if checking.is_flagged(x.finding) for name in x.names}
     lengths = [x for pair in checked.pairs for x in (pair.residual, pair.leave_one_out)]
     decimals = _decimals(max((x for x in lengths if not math.isnan(x)), default=0.0))
     for pair in checked.pairs:
@@ -80,9 +80,9 @@ def _print(console: Console, name: str, session: Session, checked: checking.Chec
     console.print(pairs)
     for label, words in _figures(session, checked):
         console.print(f"{label:<22}{words}", markup=False, highlight=False)
-    for remark in checked.remarks:
-        mark = "!" if remark.is_flagged else "-"
-        console.print(f"{mark} {remark.words}", markup=False, highlight=False)
+    for found in checked.findings:
+        mark = "!" if checking.is_flagged(found.finding) else "-"
+        console.print(f"{mark} {found.sentence}", markup=False, highlight=False)
     for note in checked.notes:
         console.print(f"- {note}", markup=False, highlight=False)
 

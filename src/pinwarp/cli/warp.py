@@ -46,7 +46,8 @@ def warp(
     if not inputs and opened.source is None:
         raise PinwarpError(f"{session.name} has no source mesh: name the files to warp.")
     sources = inputs or ([] if opened.source is None else [opened.source.path])
-    outputs = outputs_of(sources, out, force=force)
+    meshes = [file.path for file in (opened.source, opened.destination) if file is not None]
+    outputs = outputs_of(sources, out, kept=[session, *meshes], force=force)
     if opened.source is not None and (axes := opened.source.mirrored):
         opened = with_meshes(opened, [Side.SOURCE])
         tell_notes([f"The session mirrors its source ({axes}): so are the inputs."])

@@ -51,6 +51,11 @@ class Finding:
     value: float
     others: tuple[float, ...] = ()
 
+    @property
+    def is_grave(self) -> bool:
+        """Whether something may be wrong: an isolated landmark is only far from the others."""
+        return self.kind is not FindingKind.ISOLATED
+
     def describe(self, names: Sequence[str] | None = None, unit: str = "") -> str:
         """Say it in a sentence.
 

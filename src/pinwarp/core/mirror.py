@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pinwarp.core.alignment import fit_similarity
 from pinwarp.core.mesh import Mesh
 
 AXES = "xyz"
@@ -57,3 +58,27 @@ def toggled(axes: str, axis: str) -> str:
     ('xz', 'z')
     """
     return "".join(a for a in AXES if (a in axes) != (a == axis))
+
+
+def axis_to_mirror(source: ArrayLike, destination: ArrayLike) -> str:
+    """Return the axis across which the source is to be mirrored to lie as the destination does.
+
+    Mirroring across any axis makes a left bone a right one, and all fit equally well; they differ
+    by half a turn. The one that leaves least to turn keeps the bone as it is seen.
+
+    Parameters
+    ----------
+    source, destination
+        (n, 3) positions, row by row the same landmarks.
+
+    Examples
+    --------
+    >>> source = np.random.default_rng(0).normal(size=(8, 3))
+    >>> axis_to_mirror(source, 1.1 * source * [1, -1, 1] + 7)
+    'y'
+    """
+    u = np.asarray(source, dtype=np.float64)
+    mirrors = 1 - 2 * np.eye(3)
+    # The smaller the angle of a rotation, the larger its trace.
+    kept = [float(np.trace(fit_similarity(u * m, destination).rotation)) for m in mirrors]
+    return AXES[int(np.argmax(kept))]

@@ -81,11 +81,18 @@ SPECS = (
     ActionSpec("move_up", "Move Row &Up", "Alt+Up"),
     ActionSpec("move_down", "Move Row Do&wn", "Alt+Down"),
     ActionSpec("next_incomplete", "Next &Incomplete Landmark", "N"),
+    ActionSpec(
+        "next_finding", "Next Pair to &Check", "Shift+N", "", "The next one listed below the table"
+    ),
+    ActionSpec("swap_destinations", "Swap Dest&inations", "", "", "Of two landmarks"),
     ActionSpec("filter", "&Filter Landmarks", "Ctrl+F"),
     ActionSpec("delete_side", "&Delete Position", "Del", "delete", "On the selected side only"),
     ActionSpec("delete_landmark", "Delete &Landmark", "Ctrl+Del", "", "On both sides"),
     ActionSpec("select_none", "Select &None", "Esc"),
     ActionSpec("overlay", "Show &Warped Source", "W", "overlay", "Over the destination", True),
+    ActionSpec(
+        "arrows", "Residual &Arrows", "A", "", "From warped landmarks to destinations", True
+    ),
     ActionSpec(
         "show_coordinates", "Show &Coordinates", "Ctrl+Shift+C", "", "In the table, to edit", True
     ),
@@ -121,6 +128,14 @@ SPECS = (
     ActionSpec("apply_affine", "&Affine Fit Only", "", "", "Turned, moved, sized, sheared", True),
     ActionSpec("apply_similarity", "&Similarity Fit Only", "", "", "Turned, moved, sized", True),
     ActionSpec("apply_rigid", "&Rigid Fit Only", "", "", "Turned and moved", True),
+    ActionSpec("play_blend", "&Play Blend", "B", "play", "From the source to the warp", True),
+    ActionSpec("copy_figures", "&Copy Figures", "", "", "The warp taken apart, as a table"),
+    ActionSpec("grid_none", "&None", "", "", "No grid", True),
+    ActionSpec("grid_box", "&Box", "", "", "Straight on the source, bent by the warp", True),
+    ActionSpec("grid_plane_x", "Plane Across &X", "", "", "Of the source's axes", True),
+    ActionSpec("grid_plane_y", "Plane Across &Y", "", "", "Of the source's axes", True),
+    ActionSpec("grid_plane_z", "Plane Across &Z", "", "", "Of the source's axes", True),
+    ActionSpec("grid_next", "N&ext Grid", "D"),
     ActionSpec("markers_larger", "La&rger Landmarks", "]"),
     ActionSpec("markers_smaller", "S&maller Landmarks", "["),
     ActionSpec("wireframe", "W&ireframe Bones", "Shift+W", "", "Draw edges only", True),
@@ -129,6 +144,7 @@ SPECS = (
     ActionSpec("shortcuts", "&Shortcuts", "F1", "", "All keys and mouse gestures"),
     ActionSpec("about", "&About pinwarp"),
     ActionSpec("about_penalty", "About the Warping &Penalty"),
+    ActionSpec("about_quality", "About the &Quality Figures"),
 )
 
 
@@ -154,17 +170,18 @@ def make_actions(parent: QObject) -> dict[str, QAction]:
     return actions
 
 
-def icon(name: str) -> QIcon:
-    """Return an icon of the project's own, in the colour of the window's text."""
+def icon(name: str, colour: str = "") -> QIcon:
+    """Return an icon of the project's own, in the colour of the window's text or in another."""
     text = (assets_folder() / "icons" / f"{name}.svg").read_text(encoding="utf-8")
     result = QIcon()
-    normal, selected = theme.text_colour().name(), theme.selected_text_colour().name()
-    for mode, colour, opacity in (
+    normal = colour or theme.text_colour().name()
+    selected = theme.selected_text_colour().name()
+    for mode, ink, opacity in (
         (QIcon.Mode.Normal, normal, 1.0),
         (QIcon.Mode.Selected, selected, 1.0),
         (QIcon.Mode.Disabled, normal, 0.35),
     ):
-        renderer = QSvgRenderer(QByteArray(text.replace("currentColor", colour).encode()))
+        renderer = QSvgRenderer(QByteArray(text.replace("currentColor", ink).encode()))
         for size in (20, 40, 64):
             pixmap = QPixmap(QSize(size, size))
             pixmap.fill(Qt.GlobalColor.transparent)

@@ -166,6 +166,9 @@ def _blends(order: AnimationOrder, copy: Offscreen, ends: Ends) -> Iterator[None
     drawn = None if actor is None else pv.wrap(actor.GetMapper().GetInputDataObject(0, 0))
     if drawn is None or drawn.n_points != len(ends.warped):
         raise PinwarpError("The warped source is not drawn yet: try again once it is.")
+    if "grid" in copy.actors:
+        # It is that of the whole warp, and would stand still.
+        copy.actors["grid"].SetVisibility(False)
     for share in (1 - np.cos(2 * np.pi * np.arange(order.frames) / order.frames)) / 2:
         drawn.points[:] = ends.at(float(share))
         drawn.GetPoints().Modified()

@@ -15,6 +15,7 @@ from qtpy.QtWidgets import QWidget
 from pinwarp.core.landmarks import Side
 from pinwarp.gui import theme
 from pinwarp.gui.camera_pose import Matrix, Pose, best_frame, fitted
+from pinwarp.gui.drawn_lines import DrawnLines
 from pinwarp.gui.drawn_mesh import DrawnMesh, OverlayWarp
 from pinwarp.gui.fast_view import FastView
 from pinwarp.gui.marker_layer import MarkerLayer
@@ -50,6 +51,7 @@ class Canvas(FastView):
         self._coarse = DrawnMesh(self, "surface stand-in", **bone)
         self._overlay = DrawnMesh(self, "overlay", **warped)
         self._coarse_overlay = DrawnMesh(self, "overlay stand-in", **warped)
+        self._grid = DrawnLines(self, "grid", color=theme.INK, opacity=0.4)
         self._full_frame_seconds = 0.0
         self._warping = self._orbiting = False
         self.set_background(theme.BACKGROUND_BOTTOM, top=theme.BACKGROUND_TOP)
@@ -98,7 +100,7 @@ class Canvas(FastView):
         self.layer.hint, self.layer.unit = scene.hint, scene.unit
         self.layer.radius = scene.marker_radius
         self.layer.set_markers(scene.markers)
-        self.layer.ghost = scene.ghost
+        self.layer.ghost, self.layer.arrows = scene.ghost, scene.arrows
         if before is None or scene.wireframe != before.wireframe:
             for drawn in (self._full, self._coarse):
                 drawn.set_wireframe(scene.wireframe)
@@ -128,6 +130,20 @@ class Canvas(FastView):
         self._overlay.remove()
         self._coarse_overlay.remove()
         self.update()
+
+    def show_grid(self, lines: NDArray | None) -> None:
+        """Show (lines, samples, 3) positions as lines, or none; the camera stays where it is."""
+        if lines is None:
+            self._grid.remove()
+        else:
+            self._grid.write(lines)
+        self.renderer.ResetCameraClippingRange()
+        self.update()
+
+    @property
+    def grid_lines(self) -> NDArray | None:
+        """The (lines, samples, 3) positions of the grid as drawn, None where there is none."""
+        return self._grid.lines
 
     def _show_section(self, share: float | None) -> None:
         """Move the cross-section; when it is switched on it faces the camera."""

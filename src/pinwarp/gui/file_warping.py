@@ -10,7 +10,6 @@ from pinwarp.gui.file_tasks import FileTasks, Progress
 from pinwarp.gui.jobs import Cancelled
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
 from pinwarp.io.meshes import MESH_SUFFIXES
-from pinwarp.session.batch import refuse_to_replace
 from pinwarp.session.editor import Editor
 from pinwarp.session.exports import applied_in_words
 from pinwarp.session.warp_files import FileWarper, WarpedFile, outputs_of, warp_each
@@ -45,8 +44,7 @@ class FileWarping:
         if folder is None:
             return
         try:
-            outputs = outputs_of(inputs, folder, force=True)
-            refuse_to_replace(self._kept(), outputs)
+            outputs = outputs_of(inputs, folder, kept=self._kept(), force=True)
         except PinwarpError as error:
             dialogs.tell_error("Cannot warp these files", str(error))
             return

@@ -10,10 +10,12 @@ from qtpy.QtCore import (
     QPersistentModelIndex,
     QPoint,
     QRect,
+    QRectF,
     QSize,
     Qt,
     Signal,
 )
+from qtpy.QtGui import QColor, QIcon, QPainter, QPalette
 from qtpy.QtWidgets import (
     QLineEdit,
     QStyle,
@@ -24,11 +26,12 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.gui import theme
-from pinwarp.gui.landmark_model import LandmarkModel
+from pinwarp.gui.landmark_model import SHARE, LandmarkModel
 from pinwarp.gui.landmark_order import LandmarkOrder
 
 _KEYS = (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Tab, Qt.Key.Key_Backtab)
 _LONGEST_MS = 8000
+_PADDING = 4
 
 
 class LandmarkCells(QStyledItemDelegate):
@@ -83,6 +86,39 @@ class LandmarkCells(QStyledItemDelegate):
         if line.styleSheet():
             line.setStyleSheet("")
             QToolTip.hideText()
+
+
+class FigureCells(LandmarkCells):
+    """Numbers before a bar that shows how large each is, behind a sign where there is one."""
+
+    def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: QModelIndex) -> None:
+        """Paint the bar under the number, so that both are read."""
+        cell = QStyleOptionViewItem(option)
+        self.initStyleOption(cell, index)
+        style, palette = cell.widget.style(), cell.palette
+        style.drawPrimitive(
+            QStyle.PrimitiveElement.PE_PanelItemViewItem, cell, painter, cell.widget
+        )
+        active = bool(cell.state & QStyle.StateFlag.State_Active)
+        group = QPalette.ColorGroup.Active if active else QPalette.ColorGroup.Inactive
+        selected = bool(cell.state & QStyle.StateFlag.State_Selected)
+        role = QPalette.ColorRole.HighlightedText if selected else QPalette.ColorRole.Text
+        ink = palette.color(group, role)
+        room = QRectF(cell.rect).adjusted(_PADDING, 0, -_PADDING, 0)
+        share = index.data(SHARE)
+        if share:
+            bar = room.adjusted(0, 3, 0, -3)
+            bar.setWidth(max(bar.width() * share, 1))
+            colour = QColor(theme.OUTLINE if selected else theme.BAR_COLOUR)
+            colour.setAlphaF(0.28)
+            painter.fillRect(bar, colour)
+        if not cell.icon.isNull():
+            mode = QIcon.Mode.Selected if selected else QIcon.Mode.Normal
+            side = cell.decorationSize.height()
+            sign = QRectF(room.left(), room.center().y() - side / 2, side, side)
+            cell.icon.paint(painter, sign.toRect(), mode=mode)
+        painter.setPen(ink)
+        painter.drawText(room, cell.displayAlignment, cell.text)
 
 
 class NameCells(LandmarkCells):

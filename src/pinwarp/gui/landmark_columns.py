@@ -9,27 +9,33 @@ from __future__ import annotations
 import functools
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from qtpy.QtGui import QIcon
 
 from pinwarp.core.errors import LandmarkError
+from pinwarp.core.findings import Finding, FindingKind
 from pinwarp.core.landmarks import Landmark, LandmarkState, Position, Side, as_position
+from pinwarp.gui import theme
 from pinwarp.gui.actions import icon
 from pinwarp.gui.marker_painting import state_icon
 from pinwarp.io.csv_cells import as_sentence, number_of
 from pinwarp.session import edits
+from pinwarp.session.quality import NamedFinding
+from pinwarp.session.results import is_rounding
 from pinwarp.session.session import Session
 
 
 @dataclass(frozen=True)
 class Row:
-    """A landmark, and the numbers found for it by the key of their column."""
+    """A landmark, the numbers found for it by the key of their column, and what was noticed."""
 
     landmark: Landmark
     values: Mapping[str, float]
+    findings: Sequence[NamedFinding] = ()
+    unit: str = ""
 
 
 @dataclass(frozen=True)
@@ -58,6 +64,10 @@ class Column:
         Which side of the landmark a click on a cell means.
     header_icon
         The name of an icon that says the title in less room.
+    short_title
+        Letters that do so.
+    has_bar
+        Whether a bar behind the number shows how large it is beside the others.
     is_numeric
         Whether it is written flush right.
     widest
@@ -80,15 +90,30 @@ class Column:
     label: str = "Edit {}"
     side: Side | None = None
     header_icon: str = ""
+    short_title: str = ""
+    has_bar: bool = False
     is_numeric: bool = False
     widest: str = ""
     on_demand: bool = False
 
 
 def number_column(
-    key: str, title: str, tip: str, text: Callable[[float, Landmark], str] | None = None
+    key: str,
+    title: str,
+    tip: str,
+    text: Callable[[float, Landmark], str] | None = None,
+    **more: Any,
 ) -> Column:
     """Return a column of numbers that the model was shown under its key.
+
+    Parameters
+    ----------
+    key, title, tip
+        As of a :class:`Column`.
+    text
+        What is shown of a number.
+    more
+        Further parameters of the column.
 
     Examples
     --------
@@ -112,6 +137,7 @@ def number_column(
         sort_key=lambda row: 0.0 if shown(row) == "0" else row.values.get(key),
         is_numeric=True,
         widest="0.00123",
+        **more,
     )
 
 
@@ -150,9 +176,9 @@ def _lock_icon(row: Row) -> QIcon:
 
 
 @functools.cache
-def kept_icon(name: str) -> QIcon:
-    """Return an icon that is drawn often."""
-    return icon(name)
+def kept_icon(name: str, colour: str = "") -> QIcon:
+    """Return an icon that is drawn often, in the colour of text or in one of its own."""
+    return icon(name, colour)
 
 
 def _lock_tip(row: Row) -> str:
@@ -165,27 +191,56 @@ def _placed(side: Side) -> Callable[[Row], str]:
     def text(row: Row) -> str:
         passenger = row.landmark.state is LandmarkState.PASSENGER
         if passenger and side is Side.DESTINATION and row.landmark.source is not None:
-            return "carried"
+            return "→"
         return "–" if row.landmark.position(side) is None else "✓"
 
     return text
 
 
-def _residual_text(residual: float, landmark: Landmark) -> str:
-    size = max(abs(x) for x in landmark.destination or (1.0,))
-    return "0" if residual < 1e-9 * max(size, 1e-300) else f"{residual:.3g}"
+def _placed_tip(side: Side) -> Callable[[Row], str]:
+    def tip(row: Row) -> str:
+        if _placed(side)(row) == "→":
+            return "A passenger: the warp carries it over."
+        return position_text(row.landmark.position(side))
+
+    return tip
 
 
-def _side_column(side: Side, title: str) -> Column:
+def _length_text(length: float, landmark: Landmark) -> str:
+    place = landmark.destination
+    return "0" if place is not None and is_rounding(length, place) else f"{length:.3g}"
+
+
+def _left_out_tip(row: Row) -> str:
+    if row.findings:
+        return "\n".join(found.sentence for found in row.findings)
+    missed, times = row.values.get("left_out"), row.values.get("standardised")
+    if missed is None or times is None or not math.isfinite(missed):
+        return ""
+    # The same words for those that are not suspicious.
+    ordinary = Finding(FindingKind.SUSPECT, (0,), times, (missed,))
+    return ordinary.describe([row.landmark.name], row.unit)
+
+
+def _sign(row: Row) -> QIcon | None:
+    if not row.findings:
+        return None
+    if any(found.finding.is_grave for found in row.findings):
+        return kept_icon("warning", theme.WARNING_COLOUR)
+    return kept_icon("isolated", theme.QUIET_INK)
+
+
+def _side_column(side: Side) -> Column:
     return Column(
         key=side.value,
-        title=title,
+        title=side.value.capitalize(),
         tip=f"Whether it is placed on the {side.value} mesh; the tip shows where",
         text=_placed(side),
         sort_key=lambda row: row.landmark.position(side) is None,
-        cell_tip=lambda row: position_text(row.landmark.position(side)),
+        cell_tip=_placed_tip(side),
         side=side,
-        widest="carried",
+        short_title=side.value[0].upper(),
+        widest="→",
     )
 
 
@@ -267,15 +322,25 @@ COLUMNS: tuple[Column, ...] = (
         edit_text=lambda row: row.landmark.name,
         label="Rename {}",
     ),
-    _side_column(Side.SOURCE, "Source"),
+    _side_column(Side.SOURCE),
     *(_coordinate_column(Side.SOURCE, "Source", axis) for axis in range(3)),
-    _side_column(Side.DESTINATION, "Dest."),
+    _side_column(Side.DESTINATION),
     *(_coordinate_column(Side.DESTINATION, "Dest.", axis) for axis in range(3)),
     number_column(
         "residual",
         "Residual",
         "Distance from the warped source landmark to its destination",
-        _residual_text,
+        _length_text,
+        has_bar=True,
+    ),
+    number_column(
+        "left_out",
+        "Left out",
+        "How far the destination lies from where the other pairs alone would put the landmark",
+        _length_text,
+        cell_tip=_left_out_tip,
+        icon=_sign,
+        has_bar=True,
     ),
     Column(
         key=LOCKED,
@@ -290,6 +355,15 @@ COLUMNS: tuple[Column, ...] = (
 )
 
 
+_NUMBERS = {column.key: number for number, column in enumerate(COLUMNS)}
+
+
 def column_number(key: str) -> int:
-    """Return where a column stands."""
-    return next(number for number, column in enumerate(COLUMNS) if column.key == key)
+    """Return where a column stands.
+
+    Raises
+    ------
+    KeyError
+        When there is no such column.
+    """
+    return _NUMBERS[key]

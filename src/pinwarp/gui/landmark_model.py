@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from numpy.typing import NDArray
 from qtpy.QtCore import QAbstractTableModel, QMimeData, QModelIndex, Qt, Signal
 from qtpy.QtGui import QColor
 from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.errors import PinwarpError
-from pinwarp.core.landmarks import Landmark, LandmarkState, Position
+from pinwarp.core.landmarks import Landmark, LandmarkState
 from pinwarp.gui import theme
 from pinwarp.gui.landmark_columns import COLUMNS, NAME, Column, Row, column_number, kept_icon
-from pinwarp.session.results import WarpResult
+from pinwarp.session.pair_names import pair_names
+from pinwarp.session.quality import NamedFinding, Quality
+from pinwarp.session.results import WarpInputs, WarpResult
 from pinwarp.session.session import Session
 
+# The role under which a cell says how large its number is beside the largest of its column.
+SHARE = Qt.ItemDataRole.UserRole
+# Numbers without a column: tips ask for them when they are shown.
+_ONLY_TOLD = ("standardised",)
 _ROWS_MIME = "application/x-pinwarp-landmarks"
 # Made once: Qt asks for them cell by cell whenever the selection changes.
 _BETWEEN_ROWS = Qt.ItemFlag.ItemIsDropEnabled
@@ -39,7 +47,12 @@ class LandmarkModel(QAbstractTableModel):
         self._session = Session()
         self._landmarks: list[Landmark] = []
         self._values: dict[str, dict[str, float]] = {}
-        self._residuals: dict[tuple[Position | None, Position | None], float] = {}
+        self._largest: dict[str, float] = {}
+        # By column: sorting compares thousands of times.
+        self._sort_keys: dict[int, list[Any]] = {}
+        self._findings: dict[str, list[NamedFinding]] = {}
+        # What was found by the rows of a warp, which outlast a change of the session.
+        self._figures: dict[str, tuple[WarpInputs, Sequence[float]]] = {}
         self.is_updating = False
 
     @property
@@ -52,7 +65,14 @@ class LandmarkModel(QAbstractTableModel):
         landmark = self._landmarks[number]
         name = landmark.name
         found = {key: values[name] for key, values in self._values.items() if name in values}
-        return Row(landmark, found)
+        return Row(landmark, found, self._findings.get(name, ()), self._session.unit)
+
+    def sort_keys(self, column: int) -> Sequence[Any]:
+        """Return what the rows are sorted by in a column."""
+        if column not in self._sort_keys:
+            key = COLUMNS[column].sort_key
+            self._sort_keys[column] = [key(self.row(i)) for i in range(len(self._landmarks))]
+        return self._sort_keys[column]
 
     # From the session to the rows
 
@@ -67,7 +87,8 @@ class LandmarkModel(QAbstractTableModel):
             self._sort_like(names)
             self._insert(session.landmarks)
         self._update(session.landmarks)
-        self._show_residuals()
+        for key in self._figures:
+            self._show_figures(key)
         self.is_updating = False
 
     def _are_renamed(self, new: Sequence[Landmark]) -> bool:
@@ -86,6 +107,7 @@ class LandmarkModel(QAbstractTableModel):
         for first, last in reversed(list(_runs(gone))):
             self.beginRemoveRows(QModelIndex(), first, last)
             del self._landmarks[first : last + 1]
+            self._sort_keys.clear()
             self.endRemoveRows()
 
     def _sort_like(self, names: Sequence[str]) -> None:
@@ -98,6 +120,7 @@ class LandmarkModel(QAbstractTableModel):
         old = self.persistentIndexList()
         row = {name: i for i, name in enumerate(after)}
         self._landmarks.sort(key=lambda landmark: place[landmark.name])
+        self._sort_keys.clear()
         moved = [self.index(row[before[i.row()]], i.column()) for i in old]
         self.changePersistentIndexList(old, moved)
         self.layoutChanged.emit()
@@ -108,12 +131,14 @@ class LandmarkModel(QAbstractTableModel):
         for first, last in _runs(arriving):
             self.beginInsertRows(QModelIndex(), first, last)
             self._landmarks[first:first] = new[first : last + 1]
+            self._sort_keys.clear()
             self.endInsertRows()
 
     def _update(self, new: Sequence[Landmark]) -> None:
         pairs = enumerate(zip(self._landmarks, new, strict=True))
         changed = [i for i, (a, b) in pairs if a is not b and a != b]
         self._landmarks = list(new)
+        self._sort_keys.clear()
         self._announce(changed, 0, len(COLUMNS) - 1)
 
     def _announce(self, rows: Sequence[int], first_column: int, last_column: int) -> None:
@@ -122,35 +147,76 @@ class LandmarkModel(QAbstractTableModel):
 
     def show_result(self, result: WarpResult | None) -> None:
         """Show the residuals of a warp."""
-        self._residuals = {}
-        if result is not None and result.residuals is not None:
-            places = zip(result.inputs.source, result.inputs.destination, strict=True)
-            self._residuals = dict(zip(places, result.residuals.tolist(), strict=True))
-        self._show_residuals()
+        residuals = result.residuals if result is not None else None
+        self._keep_figures("residual", result, residuals)
+        self._show_figures("residual")
 
-    def _show_residuals(self) -> None:
-        # By its places, as a name may since mean another pair. A pair that was just moved keeps
-        # its number until the new one is there.
-        before = self._values.get("residual", {})
-        found = {}
-        if self._residuals:
-            for pair in self._session.pairs:
-                places = (pair.source, pair.destination)
-                value = self._residuals.get(places, before.get(pair.name))
-                if value is not None:
-                    found[pair.name] = value
-        self.show_values("residual", found)
+    def show_quality(self, quality: Quality | None) -> None:
+        """Show the leave-one-out errors of a warp."""
+        left_out = quality.left_out if quality is not None else None
+        self._keep_figures("left_out", quality, left_out.distances if left_out else None)
+        self._keep_figures("standardised", quality, left_out.standardised if left_out else None)
+        for key in ("left_out", "standardised"):
+            self._show_figures(key)
+
+    def _keep_figures(
+        self, key: str, found: WarpResult | Quality | None, figures: NDArray | None
+    ) -> None:
+        inputs = found.inputs if found is not None else WarpInputs.of(Session())
+        self._figures[key] = (inputs, figures.tolist() if figures is not None else [])
+
+    def _show_figures(self, key: str) -> None:
+        inputs, figures = self._figures[key]
+        names = pair_names(inputs, self._session) if figures else ()
+        self.show_values(
+            key,
+            {
+                name: figure
+                for name, figure in zip(names, figures, strict=True)
+                if name is not None and math.isfinite(figure)
+            },
+        )
 
     def show_values(self, key: str, values: Mapping[str, float]) -> None:
         """Show numbers in the column of that key, by the landmarks' names."""
         before = self._values.get(key, {})
+        if values == before:
+            return
         self._values[key] = dict(values)
+        if key in _ONLY_TOLD:
+            return
+        number = column_number(key)
+        self._sort_keys.pop(number, None)
         rows = [
             i
             for i, landmark in enumerate(self._landmarks)
             if before.get(landmark.name) != values.get(landmark.name)
         ]
-        number = column_number(key)
+        self._announce(rows, number, number)
+        if COLUMNS[number].has_bar:
+            self._measure(number)
+
+    def _measure(self, number: int) -> None:
+        """Find the longest bar of a column: if it changes, so do all the others."""
+        key, lengths = COLUMNS[number].key, self.sort_keys(number)
+        longest = max((length for length in lengths if length is not None), default=0.0)
+        if longest != self._largest.get(key) and lengths:
+            self._largest[key] = longest
+            ends = self.index(0, number), self.index(len(self._landmarks) - 1, number)
+            self.dataChanged.emit(*ends, [SHARE])
+
+    def show_findings(self, findings: Iterable[NamedFinding]) -> None:
+        """Mark the landmarks about which something was noticed, the gravest first."""
+        before, self._findings = self._findings, {}
+        for found in findings:
+            for name in found.names:
+                self._findings.setdefault(name, []).append(found)
+        rows = [
+            i
+            for i, landmark in enumerate(self._landmarks)
+            if before.get(landmark.name) != self._findings.get(landmark.name)
+        ]
+        number = column_number("left_out")
         self._announce(rows, number, number)
 
     # What Qt asks for
@@ -170,7 +236,7 @@ class LandmarkModel(QAbstractTableModel):
         column = COLUMNS[section]
         match role:
             case Qt.ItemDataRole.DisplayRole:
-                return "" if column.header_icon else column.title
+                return "" if column.header_icon else column.short_title or column.title
             case Qt.ItemDataRole.AccessibleTextRole:
                 return column.title
             case Qt.ItemDataRole.DecorationRole if column.header_icon:
@@ -213,6 +279,10 @@ class LandmarkModel(QAbstractTableModel):
                 return _alignment(column)
             case Qt.ItemDataRole.ToolTipRole:
                 return (column.cell_tip or column.text)(row)
+            case _ if role == SHARE and column.has_bar:
+                longest = self._largest.get(column.key)
+                length = self.sort_keys(index.column())[index.row()]
+                return length / longest if longest and length else 0.0
         return None
 
     def setData(self, index: QModelIndex, value: Any, role: int = 0) -> bool:

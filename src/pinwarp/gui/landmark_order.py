@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from qtpy.QtCore import QModelIndex, QObject, QSortFilterProxyModel, Qt
 
+from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import Landmark, LandmarkState
-from pinwarp.gui.landmark_columns import COLUMNS
 from pinwarp.gui.landmark_model import LandmarkModel
+from pinwarp.session.quality import NamedFinding
 
 _HALF = (LandmarkState.SOURCE_ONLY, LandmarkState.DESTINATION_ONLY, LandmarkState.EMPTY)
 _SHORTEST = 3
 
 
-def matches(landmark: Landmark, words: list[str]) -> bool:
+def matches(landmark: Landmark, words: list[str], findings: Iterable[NamedFinding] = ()) -> bool:
     """Whether each word occurs in the name or note of a landmark, or begins its state.
 
     Parameters
@@ -21,6 +24,8 @@ def matches(landmark: Landmark, words: list[str]) -> bool:
         The landmark.
     words
         In lower case.
+    findings
+        What was noticed about it: the kinds count as states, and all that may be wrong is suspect.
 
     Examples
     --------
@@ -34,6 +39,10 @@ def matches(landmark: Landmark, words: list[str]) -> bool:
         states.append("incomplete")
     if landmark.locked:
         states.append("locked")
+    for found in findings:
+        states += found.finding.kind.value.split()
+        if found.finding.is_grave:
+            states.append(FindingKind.SUSPECT.value)
     return all(word in text or _begins(word, states) for word in words)
 
 
@@ -72,12 +81,15 @@ class LandmarkOrder(QSortFilterProxyModel):
 
     def filterAcceptsRow(self, row: int, _parent: QModelIndex) -> bool:
         """Return whether a row is shown."""
-        return not self._words or matches(self._model.landmarks[row], self._words)
+        if not self._words:
+            return True
+        found = self._model.row(row)
+        return matches(found.landmark, self._words, found.findings)
 
     def lessThan(self, left: QModelIndex, right: QModelIndex) -> bool:
         """Return whether a row comes before another; cells without a value come last."""
-        key = COLUMNS[left.column()].sort_key
-        a, b = key(self._model.row(left.row())), key(self._model.row(right.row()))
+        keys = self._model.sort_keys(left.column())
+        a, b = keys[left.row()], keys[right.row()]
         if a is None or b is None:
             ascending = self.sortOrder() == Qt.SortOrder.AscendingOrder
             # Qt turns the comparison round for a descending order.

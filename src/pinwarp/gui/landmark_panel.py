@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from qtpy.QtCore import QEvent, QPoint, Qt
-from qtpy.QtGui import QAction, QKeySequence
+from qtpy.QtGui import QAction, QKeySequence, QResizeEvent
 from qtpy.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QMenu, QVBoxLayout, QWidget
 
 from pinwarp.gui.actions import icon
+from pinwarp.gui.findings_panel import FindingsPanel
 from pinwarp.gui.landmark_table import LandmarkTable
 
 # The words of the row menu, by the keys of the actions; "focus" is whatever the key F does.
 _ROW_MENU = (
-    "rename rename_many note - toggle_enabled toggle_locked toggle_role - focus - "
-    "copy paste - delete_side delete_landmark"
+    "rename rename_many note - toggle_enabled toggle_locked toggle_role - swap_destinations - "
+    "focus - copy paste - delete_side delete_landmark"
 )
 
 
@@ -25,7 +26,9 @@ class FilterLine(QLineEdit):
         super().__init__()
         self._rows = rows
         self.setPlaceholderText("Filter by name or state")
-        self.setToolTip("Words that the name, note or state contains, such as: incomplete (Ctrl+F)")
+        self.setToolTip(
+            "Words that the name, note or state contains, such as: incomplete, suspect (Ctrl+F)"
+        )
         self.setAccessibleName("Filter the landmarks")
         self.setClearButtonEnabled(True)
         self.addAction(icon("search"), QLineEdit.ActionPosition.LeadingPosition)
@@ -49,19 +52,22 @@ class FilterLine(QLineEdit):
 
 
 class LandmarkPanel(QWidget):
-    """The filter above the table.
+    """The filter above the table, and below it what was noticed about the pairs.
 
     Parameters
     ----------
-    table
-        The table.
+    table, findings
+        The table and the list.
     actions
         The window's actions by key, of which the menus are made.
     """
 
-    def __init__(self, table: LandmarkTable, actions: Mapping[str, QAction]) -> None:
+    def __init__(
+        self, table: LandmarkTable, findings: FindingsPanel, actions: Mapping[str, QAction]
+    ) -> None:
         super().__init__()
         self.table = table
+        self.findings = findings
         self._actions = actions
         self.filter = FilterLine(table)
         self.count = QLabel()
@@ -75,6 +81,7 @@ class LandmarkPanel(QWidget):
         column.setSpacing(4)
         column.addLayout(row)
         column.addWidget(table, 1)
+        column.addWidget(findings)
         self.row_menu = QMenu(table)
         self.header_menu = QMenu(table)
         self.original_order = self.header_menu.addAction("Original &Order")
@@ -92,6 +99,11 @@ class LandmarkPanel(QWidget):
         header.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
         header.customContextMenuRequested.connect(self._show_header_menu)
         self._actions["show_coordinates"].toggled.connect(table.show_coordinates)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Leave most of the height to the table."""
+        super().resizeEvent(event)
+        self.findings.set_room(self.height() // 3)
 
     def start_filtering(self) -> None:
         """Let the user type a filter."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -139,6 +139,16 @@ class LandmarkRequests:
     def drop(self, name: str) -> None:
         """Leave a dragged landmark where it is."""
         self._editor.commit(self._editor.session, f"Move {name}")
+
+    def swap_destinations(self, names: Sequence[str]) -> None:
+        """Exchange the destinations of two landmarks."""
+        editor = self._editor
+        chosen = [editor.committed.landmark(name) for name in names]
+        if any(self._is_locked(landmark) for landmark in chosen):
+            return
+        one, other = names
+        session = edits.swap_destinations(editor.committed, one, other)
+        editor.commit(session, f"Swap {one} and {other}")
 
     def nudge(self, side: Side, across: int, upwards: int) -> None:
         """Move the selection by steps along the screen; what is on the surface stays on it."""

@@ -13,11 +13,11 @@ from qtpy.QtCore import (
     QTimer,
     Signal,
 )
-from qtpy.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
+from qtpy.QtGui import QMouseEvent, QPainter, QPaintEvent, QResizeEvent
 from qtpy.QtWidgets import QAbstractItemView, QHeaderView, QStyle, QTableView, QWidget
 
 from pinwarp.gui import theme
-from pinwarp.gui.landmark_cells import LandmarkCells, NameCells
+from pinwarp.gui.landmark_cells import FigureCells, LandmarkCells, NameCells
 from pinwarp.gui.landmark_columns import COLUMNS, LOCKED, NAME, column_number
 from pinwarp.gui.landmark_model import LandmarkModel
 from pinwarp.gui.landmark_order import LandmarkOrder
@@ -27,6 +27,7 @@ __all__ = ["LandmarkModel", "LandmarkTable"]
 
 _NAME, _LOCKED = column_number(NAME), column_number(LOCKED)
 _LEAST_NAME_WIDTH = 150
+_SIGN = 16
 _EMPTY_HINT = "Click the same place\non both bones"
 
 
@@ -46,6 +47,10 @@ class LandmarkTable(QTableView):
         self._names = NameCells(model, self.order, self)
         self.setItemDelegate(self._cells)
         self.setItemDelegateForColumn(_NAME, self._names)
+        self._numbers = FigureCells(model, self.order, self)
+        for number, column in enumerate(COLUMNS):
+            if column.has_bar:
+                self.setItemDelegateForColumn(number, self._numbers)
         for cells in (self._cells, self._names):
             cells.refused.connect(self.refused)
         self._rendering = False
@@ -112,8 +117,10 @@ class LandmarkTable(QTableView):
         self._fitting = True
         for number, column in enumerate(COLUMNS):
             if number != _NAME and not self.isColumnHidden(number):
-                title = 16 if column.header_icon else _width(header, column.title)
-                cell = _width(self, column.widest) + 12
+                words = column.short_title or column.title
+                title = _SIGN if column.header_icon else _width(header, words)
+                sign = _SIGN if column.is_numeric and column.icon is not None else 0
+                cell = sign + _width(self, column.widest) + 12
                 header.resizeSection(number, max(title + arrow + 3 * margin, cell))
         self._fitting = False
         self._fit_name()
@@ -246,7 +253,7 @@ class LandmarkTable(QTableView):
             return
         hint = "No landmark matches\nthe filter" if self.order.is_filtered else _EMPTY_HINT
         painter = QPainter(self.viewport())
-        painter.setPen(QColor(theme.QUIET_INK) if not theme.is_dark() else theme.text_colour())
+        painter.setPen(theme.quiet_text_colour())
         room = self.viewport().rect().adjusted(12, 12, -12, -12)
         painter.drawText(_upper_half(room), Qt.AlignmentFlag.AlignCenter, hint)
         painter.end()

@@ -11,11 +11,10 @@ from qtpy.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QMainWindow,
-    QProgressBar,
-    QPushButton,
     QSizePolicy,
     QSlider,
     QSplitter,
+    QTabWidget,
     QToolBar,
     QVBoxLayout,
     QWidget,
@@ -29,9 +28,13 @@ from pinwarp.gui.documents import Documents
 from pinwarp.gui.exports import Exports
 from pinwarp.gui.file_tasks import FileTasks
 from pinwarp.gui.file_warping import FileWarping
+from pinwarp.gui.findings_panel import FindingsPanel
+from pinwarp.gui.findings_presenter import FindingsPresenter
+from pinwarp.gui.grid_presenter import GridPresenter
 from pinwarp.gui.guidance import Guidance
 from pinwarp.gui.guide_bar import GuideBar
-from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY
+from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY, ABOUT_QUALITY
+from pinwarp.gui.job_progress import JobProgress
 from pinwarp.gui.jobs import SlowJob
 from pinwarp.gui.landmark_panel import LandmarkPanel
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
@@ -47,6 +50,7 @@ from pinwarp.gui.stepped_job import SteppedJob
 from pinwarp.gui.table_presenter import TablePresenter
 from pinwarp.gui.view_controls import ViewControls
 from pinwarp.gui.viewport import Viewport
+from pinwarp.gui.warp_panel import WarpPanel
 from pinwarp.gui.warp_presenter import WarpPresenter
 from pinwarp.io.samples import sample_session
 from pinwarp.session.editor import Editor
@@ -74,16 +78,33 @@ class MainWindow(QMainWindow):
         self.jobs = SlowJob(self)
         self.stepped = SteppedJob(self)
         self.actions_by_key = make_actions(self)
-        self.landmarks = LandmarkPanel(self.table, self.actions_by_key)
+        self.warp_panel = WarpPanel(self.actions_by_key)
+        self.findings = FindingsPanel()
+        self.landmarks = LandmarkPanel(self.table, self.findings, self.actions_by_key)
         self._dialogs = dialogs or Dialogs(self)
         self._recent = RecentFiles(settings)
         self._lay_out()
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
         self.quality = QualityPresenter(self.presenter)
+        self.quality.quality_changed.connect(self.presenter.show_quality)
+        self.findings_presenter = FindingsPresenter(
+            self.editor,
+            self.quality,
+            self.model,
+            self.landmarks,
+            self.actions_by_key,
+            self.presenter.requests,
+            self._say,
+        )
         self._bone_edits = BoneEdits(self.editor, self.actions_by_key, self)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
         self.view_controls.add_to(self.findChild(QToolBar, "tools"))
-        self.warp_presenter = WarpPresenter(self.editor, self.actions_by_key, self)
+        self.warp_presenter = WarpPresenter(
+            self.editor, self.warp_panel, self.quality, self.actions_by_key, self._say, self
+        )
+        self.grid = GridPresenter(
+            self.editor, self.presenter, self.viewports, self.actions_by_key, self
+        )
         self.statusBar().addPermanentWidget(self.warp_presenter.note)
         self._tasks = FileTasks(self.editor, self.jobs, self.stepped, self._dialogs)
         self.documents = Documents(
@@ -129,17 +150,18 @@ class MainWindow(QMainWindow):
         column.addWidget(self.guide_bar)
         column.addWidget(splitter, 1)
         self.setCentralWidget(centre)
-        self._add_dock(
-            "landmarks", "Landmarks", self.landmarks, Qt.DockWidgetArea.RightDockWidgetArea
-        )
+        right = Qt.DockWidgetArea.RightDockWidgetArea
+        landmarks = self._add_dock("landmarks", "Landmarks", self.landmarks, right)
+        warp = self._add_dock("warp", "Warp", self.warp_panel, right)
+        self.tabifyDockWidget(landmarks, warp)
+        self.setTabPosition(right, QTabWidget.TabPosition.North)
+        landmarks.raise_()
         penalty = self._add_dock(
             "penalty", "Warping penalty", self.panel, Qt.DockWidgetArea.BottomDockWidgetArea
         )
         # The table keeps the whole height of the right edge.
         self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
-        self.resizeDocks(
-            [self.findChild(QDockWidget, "landmarks")], [430], Qt.Orientation.Horizontal
-        )
+        self.resizeDocks([landmarks], [430], Qt.Orientation.Horizontal)
         self.resizeDocks([penalty], [90], Qt.Orientation.Vertical)
         self._make_menus()
         self._make_toolbar()
@@ -185,15 +207,8 @@ class MainWindow(QMainWindow):
     def _make_status_bar(self) -> None:
         self.hint = QLabel()
         self.statusBar().addWidget(self.hint, 1)
-        self.progress = QProgressBar()
-        self.progress.setRange(0, 100)
-        self.progress.setFixedWidth(220)
-        self.progress.hide()
-        self.cancel = QPushButton("Cancel")
-        self.cancel.setFlat(True)
-        self.cancel.hide()
-        self.statusBar().addPermanentWidget(self.progress)
-        self.statusBar().addPermanentWidget(self.cancel)
+        progress = JobProgress(self.statusBar(), (self.jobs, self.stepped))
+        self.progress, self.cancel = progress.bar, progress.cancel
 
     # Wiring
 
@@ -235,6 +250,7 @@ class MainWindow(QMainWindow):
             "select_none": editor.select,
             "about": lambda: self._dialogs.tell("About pinwarp", ABOUT),
             "about_penalty": lambda: self._dialogs.tell("About the warping penalty", ABOUT_PENALTY),
+            "about_quality": lambda: self._dialogs.tell("About the quality figures", ABOUT_QUALITY),
         }
         for key, function in does.items():
             # Qt's "checked" argument is of no use to any of them.
@@ -249,11 +265,6 @@ class MainWindow(QMainWindow):
             viewport.files_dropped.connect(
                 lambda paths, side=side: documents.open_files(side, paths)
             )
-        for jobs in (self.jobs, self.stepped):
-            jobs.started.connect(self._on_job_started)
-            jobs.progressed.connect(self._on_job_progressed)
-            jobs.ended.connect(self._on_job_ended)
-            self.cancel.clicked.connect(jobs.cancel)
         self._tasks.said.connect(self._say)
         editor.session_changed.connect(self._on_session)
         editor.selection_changed.connect(self._on_session)
@@ -322,28 +333,11 @@ class MainWindow(QMainWindow):
         self.opacity.setValue(round(view.opacity * 100))
         self.guidance.show()
 
-    # Slow jobs
-
-    def _on_job_started(self, title: str) -> None:
-        self.progress.setFormat(title)
-        self.progress.setValue(0)
-        self.progress.show()
-        self.cancel.show()
-
-    def _on_job_progressed(self, share: float, stage: str) -> None:
-        self.progress.setValue(round(100 * share))
-        self.progress.setFormat(f"{stage} – %p%")
-
-    def _on_job_ended(self) -> None:
-        if self.jobs.is_idle and self.stepped.is_idle:
-            self.progress.hide()
-            self.cancel.hide()
-
     @property
     def is_settled(self) -> bool:
         """Whether everything asked for is done and shown."""
-        jobs_are_done = self.jobs.is_idle and self.stepped.is_idle
-        return jobs_are_done and self.presenter.is_settled and self.quality.is_settled
+        settled = (self.presenter.is_settled, self.quality.is_settled, self.grid.is_settled)
+        return self.jobs.is_idle and self.stepped.is_idle and all(settled)
 
     # The end
 
@@ -362,12 +356,15 @@ class MainWindow(QMainWindow):
         self._settings.setValue("layout", self.saveState())
         self.jobs.shut_down()
         self.stepped.shut_down()
+        self.grid.shut_down()
+        self.warp_presenter.shut_down()
+        self.findings_presenter.shut_down()
+        self.quality.quality_changed.disconnect(self.presenter.show_quality)
         self.quality.shut_down()
         self.presenter.shut_down()
         self.table_presenter.shut_down()
         self._bone_edits.shut_down()
         self.view_controls.shut_down()
-        self.warp_presenter.shut_down()
         for signal in (self.editor.session_changed, self.editor.selection_changed):
             signal.disconnect(self._on_session)
         self.editor.view_changed.disconnect(self._on_view)

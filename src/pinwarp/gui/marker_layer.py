@@ -6,6 +6,7 @@ look the same on every graphics driver. What lies behind the surface is painted 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,9 +17,10 @@ from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.landmarks import Position
 from pinwarp.gui import theme
-from pinwarp.gui.marker_painting import RADIUS, draw_label, extent, marker_pixmap
+from pinwarp.gui.arrow_painting import paint_arrow
+from pinwarp.gui.marker_painting import FAINT, HALO, RADIUS, draw_label, extent, marker_pixmap
 from pinwarp.gui.scale_bar import paint_scale_bar
-from pinwarp.gui.scene import Marker
+from pinwarp.gui.scene import Arrow, Marker
 from pinwarp.session.ghost import Ghost
 
 if TYPE_CHECKING:
@@ -35,6 +37,7 @@ class MarkerLayer(QWidget):
         self.caption = ""
         self.hint = ""
         self.ghost: Ghost | None = None
+        self.arrows: tuple[Arrow, ...] = ()
         self.unit = ""
         self.radius = RADIUS
         self.painted_for: object = None
@@ -63,8 +66,10 @@ class MarkerLayer(QWidget):
         """Return where the landmarks are on the screen: (n, 2) logical pixels."""
         if not self._markers:
             return np.zeros((0, 2))
-        places = self._canvas.project(np.array([marker.position for marker in self._markers]))
-        return places + self.offset
+        return self._project([marker.position for marker in self._markers])
+
+    def _project(self, positions: Sequence[Position]) -> NDArray:
+        return self._canvas.project(np.array(positions)) + self.offset
 
     def hidden(self) -> NDArray[np.bool_]:
         """Return which landmarks lie behind the surface as the camera stands now."""
@@ -101,7 +106,9 @@ class MarkerLayer(QWidget):
             self._paint_hint(painter)
         if self.ghost is not None:
             self._paint_ghost(painter, self.ghost)
-        self._paint_markers(painter)
+        places, hidden = self.places(), self.hidden()
+        reached_from_right = self._paint_arrows(painter, hidden)
+        self._paint_markers(painter, places, hidden, reached_from_right)
         painter.end()
 
     def _paint_title(self, painter: QPainter) -> None:
@@ -149,8 +156,38 @@ class MarkerLayer(QWidget):
             painter.drawEllipse(at, 8, 8)
         draw_label(painter, f"{ghost.name}?", at, self.width())
 
-    def _paint_markers(self, painter: QPainter) -> None:
-        places, hidden = self.places(), self.hidden()
+    def _paint_arrows(self, painter: QPainter, hidden: NDArray[np.bool_]) -> set[str]:
+        """Paint the arrows; return which landmarks are reached from the right."""
+        from_right: set[str] = set()
+        if not self.arrows:
+            return from_right
+        selected = {marker.name for marker in self._markers if marker.selected}
+        faint = {marker.name for marker, out in zip(self._markers, hidden, strict=True) if out}
+        starts = self._project([arrow.start for arrow in self.arrows])
+        ends = self._project([arrow.end for arrow in self.arrows])
+        for arrow, start, end in zip(self.arrows, starts.tolist(), ends.tolist(), strict=True):
+            chosen = arrow.name in selected
+            # What is asked about is seen even behind the bone.
+            painter.setOpacity(FAINT if arrow.name in faint and not chosen else 1.0)
+            seen = paint_arrow(
+                painter,
+                QPointF(*start),
+                QPointF(*end),
+                self.radius + HALO * chosen,
+                left_out=arrow.left_out,
+            )
+            if seen and start[0] > end[0]:
+                from_right.add(arrow.name)
+        painter.setOpacity(1.0)
+        return from_right
+
+    def _paint_markers(
+        self,
+        painter: QPainter,
+        places: NDArray,
+        hidden: NDArray[np.bool_],
+        leftwards: set[str],
+    ) -> None:
         ratio = self.devicePixelRatioF() * self.pixels_per_pixel
         # Hidden ones first, selected ones last, so that what matters lies on top.
         order = sorted(
@@ -168,5 +205,8 @@ class MarkerLayer(QWidget):
             if self._markers[i].labelled:
                 painter.setOpacity(0.5 if hidden[i] else 1.0)
                 at = QPointF(*places[i])
-                draw_label(painter, self._markers[i].name, at, self.width(), self.radius)
+                name = self._markers[i].name
+                draw_label(
+                    painter, name, at, self.width(), self.radius, leftwards=name in leftwards
+                )
         painter.setOpacity(1.0)

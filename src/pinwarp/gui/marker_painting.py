@@ -11,6 +11,10 @@ from pinwarp.core.landmarks import LandmarkState
 from pinwarp.gui import theme
 
 RADIUS = 6.0
+# By how much the ring around a selected one is wider.
+HALO = 5.0
+# How much is seen of what lies behind the surface.
+FAINT = 0.3
 
 
 def extent(radius: float) -> float:
@@ -33,12 +37,12 @@ def marker_pixmap(
     pixmap.fill(Qt.GlobalColor.transparent)
     painter = QPainter(pixmap)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    painter.setOpacity(0.3 if hidden else 1.0)
+    painter.setOpacity(FAINT if hidden else 1.0)
     centre = QPointF(width / 2, width / 2)
     if selected:
         painter.setPen(QPen(QColor(theme.OUTLINE), 1.0))
         painter.setBrush(QColor(theme.SELECTED_COLOUR))
-        painter.drawEllipse(centre, radius + 5, radius + 5)
+        painter.drawEllipse(centre, radius + HALO, radius + HALO)
     colour = QColor(theme.STATE_COLOURS[state])
     outline = QPen(QColor(theme.OUTLINE), 1.2)
     match state:
@@ -78,11 +82,18 @@ def state_icon(state: LandmarkState) -> QIcon:
 
 
 def draw_label(
-    painter: QPainter, text: str, at: QPointF, room: float, radius: float = RADIUS
+    painter: QPainter,
+    text: str,
+    at: QPointF,
+    room: float,
+    radius: float = RADIUS,
+    *,
+    leftwards: bool = False,
 ) -> QRectF:
     """Write a label beside a point, on a paper plate so that it reads on any bone.
 
-    It stands on the right, or on the left where that would leave the room (the picture's width).
+    It stands on the right, or on the left where it is asked to or where it would leave the room
+    (the picture's width).
     """
     metrics = painter.fontMetrics()
     plate = QRectF(
@@ -91,7 +102,7 @@ def draw_label(
         metrics.horizontalAdvance(text) + 12,
         metrics.height() + 4,
     )
-    if plate.right() > room - 2:
+    if leftwards or plate.right() > room - 2:
         plate.moveRight(at.x() - radius - 7)
     paper = QColor(theme.PAPER)
     paper.setAlphaF(0.88)

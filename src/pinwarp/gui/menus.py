@@ -17,17 +17,18 @@ MENUS = {
     "&Edit": (
         "undo redo - copy paste - rename rename_many note - "
         "toggle_enabled toggle_locked toggle_role - move_up move_down - "
-        "delete_side delete_landmark - swap_sides @mirror - select_none filter"
+        "delete_side delete_landmark - swap_destinations swap_sides @mirror - select_none filter"
     ),
     "&Place": (
-        "accept_ghost next_incomplete - load_template guide set_pattern - snap set_nudge lock"
+        "accept_ghost next_incomplete next_finding - "
+        "load_template guide set_pattern - snap set_nudge lock"
     ),
-    "&Warp": "@components",
+    "&Warp": "@components play_blend - copy_figures",
     "&View": (
-        "overlay - fit focus @sides @cameras - section wireframe - "
+        "overlay arrows @grid - fit focus @sides @cameras - section wireframe - "
         "markers_larger markers_smaller - show_coordinates -"
     ),
-    "&Help": "shortcuts - about_penalty about",
+    "&Help": "shortcuts - about_penalty about_quality about",
 }
 SUBMENUS = {
     "@recent": ("Open &Recent", ""),
@@ -36,6 +37,10 @@ SUBMENUS = {
     "@components": (
         "&Apply",
         "apply_full apply_without_pose - apply_affine apply_similarity apply_rigid",
+    ),
+    "@grid": (
+        "&Grid",
+        "grid_none grid_box - grid_plane_x grid_plane_y grid_plane_z - grid_next",
     ),
     "@sides": (
         "&Look From",

@@ -36,7 +36,7 @@ class PictureOrder:
     sides
         The views, from left to right.
     landmarks
-        Whether landmarks are painted.
+        Whether landmarks are painted, and their arrows where the window shows them.
     names
         Whether those in front of the bone have their names beside them.
     framed
@@ -153,6 +153,7 @@ def _paint_landmarks(image: QImage, order: PictureOrder, view: Canvas, place: QR
     layer.framed = order.framed
     layer.caption, layer.unit, layer.radius = shown.caption, shown.unit, shown.radius
     if order.landmarks:
+        layer.arrows = shown.arrows
         # What is selected just now is of no interest later; names behind the bone cover others.
         layer.set_markers(
             tuple(

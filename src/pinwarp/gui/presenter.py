@@ -26,6 +26,7 @@ from pinwarp.gui.viewport import Viewport
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.ghost import Ghost, ghost_of
+from pinwarp.session.quality import Quality
 from pinwarp.session.results import WarpInputs, WarpResult, WarpSolver
 from pinwarp.session.session import Session
 
@@ -92,6 +93,7 @@ class Presenter:
         self._warps = LatestWins(self._warp)
         self._asked: tuple[WarpInputs, bool] | None = None
         self.result: WarpResult | None = None
+        self._quality: Quality | None = None
         self._table_shown_at = 0.0
         self._shown: weakref.WeakKeyDictionary[Mesh, OverlayWarp] = weakref.WeakKeyDictionary()
         self.ghosts: dict[Side, Ghost | None] = dict.fromkeys(Side)
@@ -194,8 +196,14 @@ class Presenter:
                     editor.view,
                     self.result,
                     self.ghosts[side],
+                    self._quality,
                 )
             )
+
+    def show_quality(self, quality: Quality | None) -> None:
+        """Show where the other pairs expect the selected landmarks."""
+        self._quality = quality
+        self._on_looks()
 
     def _ghost(self, side: Side) -> Ghost | None:
         """Predict where the next landmark of a side should be, on that side's surface."""

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+
+import numpy as np
 
 from pinwarp.core.landmarks import Landmark, LandmarkState, Position, Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.session.editor import Selection, ViewState
 from pinwarp.session.ghost import Ghost
-from pinwarp.session.results import WarpResult
+from pinwarp.session.pair_names import pair_names
+from pinwarp.session.quality import Quality
+from pinwarp.session.results import WarpResult, is_rounding
 from pinwarp.session.session import Session
 
 
@@ -25,6 +30,26 @@ class Marker:
 
 
 @dataclass(frozen=True)
+class Arrow:
+    """From where a landmark is carried to its destination.
+
+    Parameters
+    ----------
+    name
+        The landmark.
+    start, end
+        In the destination's frame.
+    left_out
+        Whether it is carried there by the other pairs alone.
+    """
+
+    name: str
+    start: Position
+    end: Position
+    left_out: bool = False
+
+
+@dataclass(frozen=True)
 class Scene:
     """All that one viewport shows besides its overlay's vertices."""
 
@@ -35,6 +60,7 @@ class Scene:
     overlay_opacity: float = 0.5
     hint: str = ""
     ghost: Ghost | None = None
+    arrows: tuple[Arrow, ...] = ()
     unit: str = ""
     marker_radius: float = 6.0
     wireframe: bool = False
@@ -58,10 +84,12 @@ def scene_of(
     view: ViewState,
     result: WarpResult | None,
     ghost: Ghost | None = None,
+    quality: Quality | None = None,
 ) -> Scene:
     """Say what a viewport shows.
 
     Passengers have no destination: on that side they stand where the warp carries them.
+    Selected landmarks get a second arrow, as at penalty 0 the warp misses none of them.
     """
     markers = [
         _marker(landmark, position, selection, view)
@@ -93,12 +121,38 @@ def scene_of(
         overlay_visible=side is Side.DESTINATION and view.overlay,
         overlay_opacity=view.opacity,
         ghost=ghost,
+        arrows=_arrows(session, selection, view, result, quality)
+        if side is Side.DESTINATION and view.arrows
+        else (),
         hint="" if session.mesh(side) is not None else _EMPTY_HINTS[side],
         unit=session.unit,
         marker_radius=view.marker_radius,
         wireframe=view.wireframe,
         section=view.section,
     )
+
+
+def _arrows(
+    session: Session,
+    selection: Selection,
+    view: ViewState,
+    result: WarpResult | None,
+    quality: Quality | None,
+) -> tuple[Arrow, ...]:
+    ends = {pair.name: pair.destination for pair in session.pairs if pair.destination}
+    arrows = []
+    if view.overlay and result is not None and result.landmarks is not None:
+        starts = map(as_position, result.landmarks.tolist())
+        for name, start in zip(pair_names(result.inputs, session), starts, strict=True):
+            if name is not None and not is_rounding(math.dist(start, ends[name]), ends[name]):
+                arrows.append(Arrow(name, start, ends[name]))
+    if selection.names and quality is not None and quality.left_out is not None:
+        expected = np.array(quality.inputs.destination) - quality.left_out.errors
+        starts = map(as_position, expected.tolist())
+        for name, start in zip(pair_names(quality.inputs, session), starts, strict=True):
+            if name in selection.names and name is not None and math.isfinite(sum(start)):
+                arrows.append(Arrow(name, start, ends[name], left_out=True))
+    return tuple(arrows)
 
 
 def _marker(

@@ -32,6 +32,10 @@ STATE_COLOURS = {
 SELECTED_COLOUR = "#F0E442"
 GHOST_COLOUR = "#0072B2"
 WARNING_COLOUR = "#D55E00"
+# Numbers as bars, and the arrows from where a landmark is carried to where it belongs.
+BAR_COLOUR = "#0072B2"
+ARROW_COLOUR = "#20242b"
+LEFT_OUT_COLOUR = "#D55E00"
 
 SPACE = 8
 
@@ -45,6 +49,11 @@ def is_dark() -> bool:
 def text_colour() -> QColor:
     """Return the colour of text on the window."""
     return QGuiApplication.palette().color(QPalette.ColorRole.WindowText)
+
+
+def quiet_text_colour() -> QColor:
+    """Return the colour of text on the window that may be overlooked."""
+    return text_colour() if is_dark() else QColor(QUIET_INK)
 
 
 def selected_text_colour() -> QColor:

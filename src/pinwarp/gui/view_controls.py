@@ -83,6 +83,7 @@ class ViewControls(QObject):
         self._on_trigger("focus", self.focus)
         for view in StandardView:
             self._on_trigger(f"view_{view.value}", lambda view=view: self.look_from(view))
+        actions["arrows"].toggled.connect(lambda on: editor.look(arrows=on))
         actions["wireframe"].toggled.connect(lambda on: editor.look(wireframe=on))
         actions["section"].toggled.connect(self._on_section)
         self._on_trigger("markers_larger", lambda: self._resize_markers(1))
@@ -120,6 +121,7 @@ class ViewControls(QObject):
         actions["link_next"].setIcon(icon(LINK_ACTIONS[view.link]))
         actions["markers_larger"].setEnabled(view.marker_radius < MARKER_RADII[1])
         actions["markers_smaller"].setEnabled(view.marker_radius > MARKER_RADII[0])
+        actions["arrows"].setChecked(view.arrows)
         actions["wireframe"].setChecked(view.wireframe)
         actions["section"].setChecked(view.section is not None)
         self.section_slider.setEnabled(view.section is not None)

@@ -21,7 +21,7 @@ from pinwarp.io.landmark_formats import (
     slicer_json,
     tps,
 )
-from pinwarp.io.landmark_formats.reading import LandmarkReading, SkippedLine
+from pinwarp.io.landmark_formats.reading import MOST, LandmarkReading, SkippedLine
 from pinwarp.io.landmark_formats.writing import Written
 
 __all__ = [
@@ -37,7 +37,6 @@ __all__ = [
 
 # Far more than anybody clicks; a larger file is another kind of file, and would fill the memory.
 _LARGEST = 8 << 20
-_MOST_LINES = 100_000
 _HEAD = 4096
 
 
@@ -107,7 +106,7 @@ def read_landmarks(path: str | Path, side: Side) -> LandmarkReading:
     Raises
     ------
     FileFormatError
-        When the file is missing, not text, larger than 8 MB or 100,000 lines, a session, or
+        When the file is missing, not text, larger than 8 MB or 20,000 lines, a session, or
         no landmark could be read.
 
     Examples
@@ -123,10 +122,10 @@ def read_landmarks(path: str | Path, side: Side) -> LandmarkReading:
     text = read_text(path, "landmark", _LARGEST)
     refuse_binary(path, text)
     lines = text.count("\n") + text.count("\r") - text.count("\r\n")
-    if lines > _MOST_LINES:
+    if lines > MOST:
         raise FileFormatError(
             path,
-            f"It has {lines:,} lines, and a landmark file at most {_MOST_LINES:,}. "
+            f"It has {lines:,} lines, and a landmark file at most {MOST:,}. "
             "Check that it is the right file.",
         )
     if text.lstrip('" ').startswith("# pinwarp-session"):

@@ -281,7 +281,7 @@ def _row(task: Task, result: Outcome | Exception) -> SummaryRow:
         | {"status": DONE}
         | {key: f"{value:.6g}" for key, value in figures.items() if value is not None}
         | {
-            "findings": " ".join(remark.words for remark in checked.remarks),
+            "findings": " ".join(named.sentence for named in checked.findings),
             "notes": " ".join((*result.notes, *checked.notes)),
         }
     )

@@ -17,7 +17,7 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import Spline
 from pinwarp.core.surface_distance import DistanceFigures, SurfaceIndex
 from pinwarp.io.meshes import MeshFile
-from pinwarp.session.quality import quality_of
+from pinwarp.session.quality import NamedFinding, quality_of
 from pinwarp.session.results import WarpInputs, WarpSolver
 from pinwarp.session.session import Session
 
@@ -57,30 +57,6 @@ class PairFigures:
 
 
 @dataclass(frozen=True)
-class Remark:
-    """A finding in words.
-
-    Attributes
-    ----------
-    kind
-        What was noticed.
-    landmarks
-        The names of the pairs concerned.
-    words
-        The finding as a sentence.
-    """
-
-    kind: FindingKind
-    landmarks: tuple[str, ...]
-    words: str
-
-    @property
-    def is_flagged(self) -> bool:
-        """Whether it should be put right before the warp is used."""
-        return self.kind in FLAGGED
-
-
-@dataclass(frozen=True)
 class Check:
     """The figures of a session; lengths in its unit, None where there is no such figure.
 
@@ -98,7 +74,7 @@ class Check:
         How many vertices of the source mesh lie where the warp folds.
     distance
         Of the warped source from the surface of the destination.
-    remarks
+    findings
         What was noticed, the flagged first.
     notes
         What was noticed about the files.
@@ -119,13 +95,13 @@ class Check:
     suggested_penalty: float | None
     folded_vertices: int | None
     distance: DistanceFigures | None
-    remarks: tuple[Remark, ...]
+    findings: tuple[NamedFinding, ...]
     notes: tuple[str, ...] = ()
 
     @property
     def is_flagged(self) -> bool:
         """Whether anything should be put right before the warp is used."""
-        return any(remark.is_flagged for remark in self.remarks)
+        return any(is_flagged(named.finding) for named in self.findings)
 
     def as_json(self) -> dict[str, Any]:
         """Return all of it as plain values for JSON; figures that are not known are None."""
@@ -139,12 +115,12 @@ class Check:
             "distance": None if self.distance is None else asdict(self.distance),
             "findings": [
                 {
-                    "kind": remark.kind.value,
-                    "flagged": remark.is_flagged,
-                    "landmarks": list(remark.landmarks),
-                    "words": remark.words,
+                    "kind": named.finding.kind.value,
+                    "flagged": is_flagged(named.finding),
+                    "landmarks": list(named.names),
+                    "words": named.sentence,
                 }
-                for remark in self.remarks
+                for named in self.findings
             ],
             "notes": list(self.notes),
             "pairs": [
@@ -155,6 +131,17 @@ class Check:
                 for pair in self.pairs
             ],
         }
+
+
+def is_flagged(finding: Finding) -> bool:
+    """Say whether something should be put right before the warp is used.
+
+    Examples
+    --------
+    >>> [is_flagged(Finding(kind, (), 1.0)) for kind in (FindingKind.FOLD, FindingKind.POLE)]
+    [True, False]
+    """
+    return finding.kind in FLAGGED
 
 
 def check(session: Session) -> Check:
@@ -195,7 +182,8 @@ def check(session: Session) -> Check:
     )
     source, destination = (session.mesh(side) for side in Side)
     folds = None if source is None else _folds(result.shown, source)
-    findings = (*quality.findings, *(() if folds is None else (x.finding for x in folds.patches)))
+    findings = [*quality.findings_in(session)]
+    findings += [] if folds is None else [_named(x.finding, session) for x in folds.patches]
     return Check(
         pairs=tuple(
             PairFigures(name, *(float(x) for x in row))
@@ -210,22 +198,15 @@ def check(session: Session) -> Check:
         if source is None or destination is None
         else _distance(result.shown, source, destination),
         # Sorted is stable: the order within is kept.
-        remarks=tuple(
-            sorted(
-                (_remark(finding, names, session.unit) for finding in findings),
-                key=lambda remark: not remark.is_flagged,
-            )
-        ),
+        findings=tuple(sorted(findings, key=lambda named: not is_flagged(named.finding))),
         notes=_about_files(session),
     )
 
 
-def _remark(finding: Finding, names: list[str], unit: str) -> Remark:
-    return Remark(
-        finding.kind,
-        tuple(names[row] for row in finding.rows),
-        finding.describe(names, unit),
-    )
+def _named(finding: Finding, session: Session) -> NamedFinding:
+    names = [pair.name for pair in session.pairs]
+    concerned = tuple(names[row] for row in finding.rows)
+    return NamedFinding(finding, concerned, finding.describe(names, session.unit))
 
 
 def _folds(spline: Spline, mesh: Mesh) -> Folds:

@@ -30,6 +30,27 @@ class LinkMode(StrEnum):
     FREE = "free"
 
 
+class GridKind(StrEnum):
+    """Which regular grid is drawn through the source and, warped, over the destination."""
+
+    NONE = "none"
+    BOX = "box"
+    PLANE_X = "plane x"
+    PLANE_Y = "plane y"
+    PLANE_Z = "plane z"
+
+    @property
+    def axis(self) -> str | None:
+        """The axis of the source across the plane; None where it is no plane.
+
+        Examples
+        --------
+        >>> GridKind.PLANE_Y.axis, GridKind.BOX.axis
+        ('y', None)
+        """
+        return self.value[-1] if self.value.startswith("plane") else None
+
+
 @dataclass(frozen=True)
 class ViewState:
     """How the session is looked at and worked on: not undone, not part of what is saved.
@@ -38,6 +59,8 @@ class ViewState:
     ----------
     overlay, opacity
         Whether and how the warped source is drawn.
+    arrows
+        Whether arrows show where the warp misses its destinations.
     hovered
         The landmark under the mouse.
     locked
@@ -56,10 +79,14 @@ class ViewState:
         Whether the bones are drawn as edges only.
     section
         Share of the depth that the cross-section clips away; None without a cross-section.
+    grid, grid_share
+        The grid that is drawn, and where a plane of it crosses its axis: from 0, the low side of
+        the source, to 1.
     """
 
     overlay: bool = True
     opacity: float = 0.55
+    arrows: bool = True
     hovered: str | None = None
     locked: bool = False
     guided: str | None = None
@@ -69,6 +96,8 @@ class ViewState:
     marker_radius: float = 6.0
     wireframe: bool = False
     section: float | None = None
+    grid: GridKind = GridKind.NONE
+    grid_share: float = 0.5
 
 
 class Editor:

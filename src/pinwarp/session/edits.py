@@ -93,6 +93,25 @@ def move(session: Session, name: str, side: Side, position: Position) -> Session
     return _changed(session, name, lambda landmark: landmark.placed(side, position))
 
 
+def swap_destinations(session: Session, name: str, other: str) -> Session:
+    """Exchange the destinations of two landmarks, as when they were clicked in the wrong order.
+
+    Examples
+    --------
+    >>> ends = [(1.0, 0.0, 0.0), (2.0, 0.0, 0.0)]
+    >>> session = Session(landmarks=tuple(map(Landmark, "ab", [None, None], ends)))
+    >>> swap_destinations(session, "a", "b").landmark("a").destination
+    (2.0, 0.0, 0.0)
+    """
+    there = {
+        name: _existing(session, other).destination,
+        other: _existing(session, name).destination,
+    }
+    return _all_changed(
+        session, there, lambda landmark: landmark.placed(Side.DESTINATION, there[landmark.name])
+    )
+
+
 def remove_side(session: Session, name: str, side: Side) -> Session:
     """Remove one position; a landmark that had no other goes too, unless somebody named it."""
     landmark = _existing(session, name)

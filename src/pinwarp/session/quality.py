@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pinwarp.core.alignment import AffineParts, decompose
+from pinwarp.core.components import Components, applied, as_drawn
 from pinwarp.core.factor import SourceFactor
 from pinwarp.core.findings import Finding, FindingKind
 from pinwarp.core.landmarks import Position
@@ -18,14 +20,35 @@ from pinwarp.core.quality import (
     leave_one_out,
     penalty_curve,
 )
-from pinwarp.core.spline import PenaltyConvention, solve
+from pinwarp.core.spline import PenaltyConvention, Spline, solve
 from pinwarp.core.suspects import is_mirrored, suspects, swapped_pairs
+from pinwarp.session.pair_names import pair_names
 from pinwarp.session.results import WarpInputs, WarpResult
+from pinwarp.session.session import Session
 
 Matrix = NDArray[np.float64]
 
 # With fewer there is nothing to leave out: an affine map meets four.
 LEAST_PAIRS = 5
+
+
+@dataclass(frozen=True)
+class NamedFinding:
+    """A finding about landmarks of a session.
+
+    Attributes
+    ----------
+    finding
+        The fact.
+    names
+        The landmarks concerned, the more suspicious first; none where it concerns all.
+    sentence
+        The fact in words.
+    """
+
+    finding: Finding
+    names: tuple[str, ...]
+    sentence: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +72,11 @@ class Quality:
         The best affine fit of the pairs, taken apart about the middle of the source landmarks.
     energy : (3,) float64
         The warp's bending energy in x, y and z.
+    rms_by_components
+        How far each part of the warp leaves the pairs apart, as root mean square in destination
+        mesh units: what it does not explain. Without its pose the warp leaves as much as in full.
+    rank
+        How many directions the source landmarks span; below 3 a similarity fills in the rest.
     """
 
     inputs: WarpInputs
@@ -57,6 +85,37 @@ class Quality:
     findings: tuple[Finding, ...]
     affine: AffineParts
     energy: Matrix
+    rms_by_components: Mapping[Components, float]
+    rank: int
+
+    def findings_in(self, session: Session) -> tuple[NamedFinding, ...]:
+        """Return the findings by name, as far as their pairs are still there.
+
+        Parameters
+        ----------
+        session
+            The session as it is now, which may have moved on since the pairs were judged.
+
+        Examples
+        --------
+        >>> from pinwarp.core.landmarks import Landmark
+        >>> from pinwarp.session.results import WarpSolver
+        >>> places = [(0, 0, 0), (0, 0, 0), (9, 0, 0), (0, 9, 0), (0, 0, 9)]
+        >>> ends = [(0, 0, 0), (2, 0, 0), *places[2:]]
+        >>> session = Session(landmarks=tuple(map(Landmark, "abcde", places, ends)))
+        >>> judged = quality_of(WarpSolver().solve(WarpInputs.of(session)))
+        >>> judged.findings_in(session)[0].sentence
+        'a and b lie at the same place on the source but 2 mm apart on the destination.'
+        """
+        names = pair_names(self.inputs, session)
+        words = [name or "" for name in names]
+        named = []
+        for finding in self.findings:
+            concerned = tuple(name for row in finding.rows if (name := names[row]) is not None)
+            if len(concerned) == len(finding.rows):
+                sentence = finding.describe(words, session.unit)
+                named.append(NamedFinding(finding, concerned, sentence))
+        return tuple(named)
 
     def finding_rows(self, row: int) -> tuple[Finding, ...]:
         """Return the findings that a pair has a part in."""
@@ -88,8 +147,8 @@ def quality_of(result: WarpResult) -> Quality | None:
         if regular:
             left_out = leave_one_out(factor, destination, inputs.penalty)
     found = _about_pairs(factor, inputs.source, destination) if enough else ()
-    isolated = tuple(finding for finding in found if finding.kind is FindingKind.ISOLATED)
-    grave = tuple(finding for finding in found if finding.kind is not FindingKind.ISOLATED)
+    isolated = tuple(finding for finding in found if not finding.is_grave)
+    grave = tuple(finding for finding in found if finding.is_grave)
     return Quality(
         inputs=inputs,
         left_out=left_out,
@@ -97,7 +156,19 @@ def quality_of(result: WarpResult) -> Quality | None:
         findings=(*grave, *spline.findings, *isolated),
         affine=decompose(solve(factor, destination, np.inf).affine, factor.centre),
         energy=bending_energy(spline),
+        rms_by_components=_rms_by_components(factor, spline, destination),
+        rank=factor.rank,
     )
+
+
+def _rms_by_components(
+    factor: SourceFactor, spline: Spline, destination: Matrix
+) -> dict[Components, float]:
+    left = {}
+    for part in {as_drawn(part) for part in Components}:
+        misses = applied(spline, factor, destination, part).evaluate(factor.source) - destination
+        left[part] = float(np.sqrt(np.mean(np.sum(misses * misses, axis=1))))
+    return {part: left[as_drawn(part)] for part in Components}
 
 
 def _about_pairs(
@@ -109,5 +180,9 @@ def _about_pairs(
         return (Finding(FindingKind.MIRRORED, (), 0.0),)
     swapped = swapped_pairs(factor, destination)
     explained = {row for finding in swapped for row in finding.rows}
-    others = suspects(factor, destination)
+    # With them put right, so that nobody is blamed for his neighbour's exchange.
+    mended = destination.copy()
+    for finding in swapped:
+        mended[list(finding.rows)] = destination[list(finding.rows[::-1])]
+    others = suspects(factor, mended)
     return (*swapped, *(x for x in others if not explained.intersection(x.rows)))

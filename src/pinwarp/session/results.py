@@ -87,6 +87,8 @@ class WarpResult:
         None when there are no pairs or the solve failed.
     shown
         What is applied of the spline: all that follows here is its doing.
+    landmarks : (n, 3) float64
+        The warped source landmarks.
     residuals : (n,) float64
         Distance of each warped source landmark from its destination, in mesh units.
     vertices : (m, 3) float32 or None
@@ -103,6 +105,7 @@ class WarpResult:
     factor: SourceFactor | None = None
     spline: Spline | None = None
     shown: Spline | None = None
+    landmarks: Matrix | None = None
     residuals: Matrix | None = None
     vertices: NDArray[np.float32] | None = None
     stand_in: NDArray[np.float32] | None = None
@@ -204,7 +207,8 @@ class WarpSolver:
             return WarpResult(inputs, problem=str(error))
         source, passengers = np.array(inputs.source), np.array(inputs.passengers).reshape(-1, 3)
         destination = np.array(inputs.destination)
-        residuals = np.linalg.norm(shown.evaluate(source) - destination, axis=1)
+        landmarks = shown.evaluate(source)
+        residuals = np.linalg.norm(landmarks - destination, axis=1)
         # What is only rounding must not sort rows or draw bars.
         residuals[residuals < ROUNDING * np.abs(destination).max()] = 0.0
         return WarpResult(
@@ -212,6 +216,7 @@ class WarpSolver:
             factor=factor,
             spline=spline,
             shown=shown,
+            landmarks=landmarks,
             residuals=residuals,
             passengers=shown.evaluate(passengers) if len(passengers) else passengers,
         )
@@ -311,6 +316,17 @@ class WarpSolver:
             points = self._preview_points(mesh)
             self._influence = (key, Influence(factor, spline, row, begin, points))
         return self._influence[1].at(inputs.destination[row])
+
+
+def is_rounding(length: float, place: Position) -> bool:
+    """Whether a length is no more than the last digits of a position.
+
+    Examples
+    --------
+    >>> is_rounding(1e-12, (0.0, 40.0, 3.0)), is_rounding(1e-3, (0.0, 40.0, 3.0))
+    (True, False)
+    """
+    return length < 1e-9 * max(*map(abs, place), 1e-300)
 
 
 def _solves_the_same(a: WarpInputs, b: WarpInputs) -> bool:

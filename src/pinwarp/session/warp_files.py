@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,7 +24,9 @@ from pinwarp.session.session import Session
 WARPED = "_warped"
 
 
-def outputs_of(inputs: Sequence[Path], out: Path, *, force: bool = False) -> tuple[Path, ...]:
+def outputs_of(
+    inputs: Sequence[Path], out: Path, *, kept: Iterable[Path] = (), force: bool = False
+) -> tuple[Path, ...]:
     """Return where each of some inputs goes; nothing is written yet.
 
     Parameters
@@ -34,6 +36,8 @@ def outputs_of(inputs: Sequence[Path], out: Path, *, force: bool = False) -> tup
     out
         A file where there is one input and the name ends as a mesh or landmark file does, else
         a folder: there ``femur.ply`` becomes ``femur_warped.ply``.
+    kept
+        Files that must not be replaced either, such as the session.
     force
         Let files that are there already be replaced; inputs never are.
 
@@ -58,7 +62,7 @@ def outputs_of(inputs: Sequence[Path], out: Path, *, force: bool = False) -> tup
                 f"{other} and {source} would both become {path}: warp them into two folders."
             )
         taken[str(path).casefold()] = source
-    refuse_to_replace(inputs, outputs)
+    refuse_to_replace([*inputs, *kept], outputs)
     there = [path for path in outputs if path.exists()]
     if there and not force:
         more = f" (and {len(there) - 1} more)" if len(there) > 1 else ""

@@ -6,12 +6,13 @@ order. Function and tasks are pickled; a task whose process died comes with the 
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import sys
 import threading
 from collections import deque
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from functools import partial
@@ -107,7 +108,8 @@ def _until_one_dies(
         while waiting or running:
             # Not all at once: only what was begun is suspected when a process dies.
             while waiting and len(running) < 2 * jobs:
-                running[pool.submit(function, waiting[0])] = waiting[0]
+                with _without_ctrl_c():
+                    running[pool.submit(function, waiting[0])] = waiting[0]
                 waiting.popleft()
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 result = future.result()
@@ -123,6 +125,19 @@ def _until_one_dies(
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
     return []
+
+
+@contextlib.contextmanager
+def _without_ctrl_c() -> Iterator[None]:
+    """Put Ctrl+C off; a process that is started meanwhile never hears of it, not even at first."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _be_a_worker() -> None:
@@ -185,7 +200,7 @@ def on_cluster(
     try:
         futures = client.map(partial(_on_one_core, function), tasks, pure=False, retries=RETRIES)
         task_of = dict(zip((future.key for future in futures), tasks, strict=True))
-        for future in as_completed(futures):
+        for future in as_completed(futures, loop=client.loop):
             yield task_of[future.key], _result(future)
             future.release()
     finally:

@@ -34,7 +34,7 @@ def test_a_number_behind_the_second_cell_is_passed_over() -> None:
 @pytest.mark.parametrize(
     ("row", "reason"),
     [
-        ('"b","true","1","2","3","4"', "it has 6 cells and not 8"),
+        ('"b","true","1","2","3","4"', "it needs 8 cells and has 6"),
         ('"b","perhaps","1","2","3","4","5","6"', "'perhaps' and not true or false"),
         ('"b","true","1","Infinity","3","4","5","6"', "not a finite number"),
         ('"b","true","1","2","3","4","5","NaN"', "not a finite number"),

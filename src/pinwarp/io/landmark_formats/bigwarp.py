@@ -17,12 +17,8 @@ from pinwarp.io.csv_cells import (
     shortened,
 )
 from pinwarp.io.csv_text import Row, lines_of, rows_of
-from pinwarp.io.landmark_formats.reading import (
-    Gathering,
-    LandmarkReading,
-    checked_name,
-    one_line,
-)
+from pinwarp.io.landmark_formats.lines import checked_name, one_line
+from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written
 
 NAME = "BigWarp CSV"
@@ -93,7 +89,7 @@ def _landmark(row: Row, default: str) -> Landmark:
     if len(cells) == 9:
         del cells[2]
     if len(cells) != 8:
-        raise ValueError(f"it has {len(cells)} cells and not 8: are these two dimensions?")
+        raise ValueError(f"it needs 8 cells and has {len(cells)}: are these two dimensions?")
     active = YES_NO.get(cells[1].lower())
     if active is None:
         raise ValueError(f"the second cell is {shortened(cells[1])} and not true or false")

@@ -11,13 +11,8 @@ from xml.sax.saxutils import quoteattr
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.io.csv_cells import YES_NO, coordinates_text, shortened
-from pinwarp.io.landmark_formats.reading import (
-    Gathering,
-    LandmarkReading,
-    landmark_on,
-    one_line,
-    three_numbers,
-)
+from pinwarp.io.landmark_formats.lines import landmark_on, one_line, three_numbers
+from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written
 
 NAME = "MeshLab .pp"
@@ -25,6 +20,7 @@ SUFFIXES = (".pp",)
 HOLDS_PAIRS = False
 
 _SIGNATURE = re.compile(r"<(!DOCTYPE\s+)?PickedPoints\b")
+_DEEPEST = 20
 _AGAIN = "Save it again in MeshLab."
 
 
@@ -70,15 +66,26 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     gathering = Gathering(path)
     parser = expat.ParserCreate()
     lines = text.split("\n")
-    number = 0
+    number = depth = 0
 
     def begin(tag: str, attributes: Mapping[str, str]) -> None:
-        nonlocal number
+        nonlocal number, depth
+        depth += 1
+        if depth > _DEEPEST:
+            raise FileFormatError(
+                path,
+                f"Its elements are nested too deeply for landmarks. {_AGAIN}",
+                parser.CurrentLineNumber,
+            )
         if tag == "point":
             line = parser.CurrentLineNumber
             words = lines[line - 1] if line <= len(lines) else ""
             gathering.take(line, words, _landmark, attributes, side, f"landmark_{number}")
             number += 1
+
+    def end(_tag: str) -> None:
+        nonlocal depth
+        depth -= 1
 
     def refuse(*_arguments: object) -> None:
         raise FileFormatError(
@@ -88,6 +95,7 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
         )
 
     parser.StartElementHandler = begin
+    parser.EndElementHandler = end
     parser.EntityDeclHandler = refuse
     try:
         parser.Parse(text, True)

@@ -9,15 +9,15 @@ from pathlib import Path
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.io.csv_cells import shortened
-from pinwarp.io.landmark_formats.reading import (
-    Gathering,
-    LandmarkReading,
+from pinwarp.io.csv_text import LONGEST_CELL
+from pinwarp.io.landmark_formats.lines import (
     checked_name,
     filled_lines,
     landmark_on,
     one_line,
     three_numbers,
 )
+from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written, left_out, numbers_text, placed_only
 
 NAME = "MNI .tag"
@@ -77,6 +77,9 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     for number, line in filled_lines(text):
         if line[0] in "%#" or line.startswith(_SIGNATURE):
             continue
+        if len(line) > LONGEST_CELL:
+            gathering.skip(number, line, f"it is longer than {LONGEST_CELL:,} characters")
+            continue
         if not in_points:
             volumes = _volumes(path, number, line) or volumes
             opening = _POINTS.match(line)
@@ -88,7 +91,12 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
             gathering.take(number, line, _landmark, line, volumes, side, f"landmark_{row}")
             row += 1
         ended = ended or _without_label(line).endswith(";")
-    return gathering.reading(NAME, 'lines as in: 1.5 2.5 3.5 "nasion"', is_pairs=volumes == 2)
+    return gathering.reading(
+        NAME,
+        'lines as in: 1.5 2.5 3.5 "nasion"',
+        is_pairs=volumes == 2,
+        notes=() if ended else ("The last semicolon is missing: was the file cut off?",),
+    )
 
 
 def _volumes(path: str | Path, number: int, line: str) -> int:

@@ -15,7 +15,8 @@ from pinwarp.io.csv_cells import (
     position_of,
 )
 from pinwarp.io.csv_text import Row, csv_line, lines_of, rows_of, separator_of
-from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading, checked_name
+from pinwarp.io.landmark_formats.lines import checked_name
+from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written, placed_only
 
 NAME = "OpenSim Creator CSV"

@@ -15,12 +15,8 @@ from pinwarp.io.csv_cells import (
     shortened,
 )
 from pinwarp.io.csv_text import Row, csv_line, lines_of, rows_of
-from pinwarp.io.landmark_formats.reading import (
-    Gathering,
-    LandmarkReading,
-    landmark_on,
-    one_line,
-)
+from pinwarp.io.landmark_formats.lines import landmark_on, one_line
+from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written, in_millimetres, placed_only
 
 NAME = "3D Slicer .fcsv"
@@ -84,8 +80,8 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     """
     gathering = Gathering(path)
     versioned, frame, notes = False, "", []
-    number = 0
-    for row in rows_of(lines_of(text), ","):
+    number, lines = 0, lines_of(text)
+    for row in rows_of(lines, ","):
         if row.is_blank:
             continue
         if row.text.startswith("#"):
@@ -97,7 +93,8 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
                     notes.append(f"The coordinate system {shortened(found[1])} is not known.")
             continue
         default = f"landmark_{number}"
-        gathering.take(row.line, row.text, _landmark, row, versioned, side, default)
+        is_last = row.line == len(lines) and not text.endswith(("\n", "\r"))
+        gathering.take(row.line, row.text, _landmark, row, versioned, is_last, side, default)
         number += 1
     return gathering.reading(
         NAME,
@@ -108,9 +105,12 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     )
 
 
-def _landmark(row: Row, versioned: bool, side: Side, default: str) -> Landmark:
+def _landmark(row: Row, versioned: bool, is_last: bool, side: Side, default: str) -> Landmark:
     if row.problem:
         raise ValueError(row.problem)
+    # Its last number may have lost digits.
+    if versioned and is_last and len(row.cells) <= _LABEL:
+        raise ValueError("it ends before its label: was it cut off?")
     cells = (*row.cells, *[""] * _STATUS)
     name = cells[_LABEL] if versioned else cells[0]
     position = position_of(cells[1:4], ",")

@@ -5,14 +5,15 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Position, Side
 from pinwarp.io.csv_cells import shortened
-from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading, landmark_on
+from pinwarp.io.landmark_formats.lines import landmark_on
+from pinwarp.io.landmark_formats.reading import MOST, Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written, in_millimetres
 
 T = TypeVar("T")
@@ -104,6 +105,14 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
 
 
 def _parsed(path: str | Path, text: str) -> Any:
+    parts = text.count("{") + text.count("[")
+    # A point has three; more than memory holds are quickly written.
+    if parts > 10 * MOST:
+        raise FileFormatError(
+            path,
+            f"It has {parts:,} lists, far more than landmarks. Check that it is the right file.",
+            1,
+        )
     try:
         # Whole numbers of thousands of digits cannot become an int, but a float.
         return json.loads(text, parse_int=float)
@@ -139,12 +148,12 @@ def _unit(value: object) -> str:
     return _word(value).strip("[]").split(",")[0].strip("\"' ")
 
 
-def _places(text: str, count: int) -> list[tuple[int, str]]:
+def _places(text: str, count: int) -> Iterator[tuple[int, str]]:
     """Find the line at which each control point begins, and how it begins."""
     start = _POINTS.search(text)
     place = start.end() if start else 0
     decoder = json.JSONDecoder(parse_int=float)
-    line, counted, found = 1, 0, []
+    line, counted = 1, 0
     for _ in range(count):
         between = _BETWEEN.match(text, place)
         place = between.end() if between else place
@@ -155,9 +164,8 @@ def _places(text: str, count: int) -> list[tuple[int, str]]:
         except ValueError:
             # The key stood somewhere else, too: the line is that of the first.
             end = place
-        found.append((line, " ".join(text[place : min(end, place + 400)].split())))
+        yield line, " ".join(text[place : min(end, place + 400)].split())
         place = end
-    return found
 
 
 def _landmark(point: object, side: Side, default: str) -> Landmark:
