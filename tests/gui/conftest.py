@@ -15,7 +15,7 @@ from vtkmodules.vtkCommonCore import vtkObjectBase
 
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.app import make_application
-from pinwarp.gui.dialogs import Answer, LostAnswer, OpenTwice, Overwrite
+from pinwarp.gui.dialogs import Answer, Existing, LostAnswer, OpenTwice, Overwrite
 from pinwarp.gui.main_window import MainWindow
 from pinwarp.io.samples import assets_folder, sample_session
 from pinwarp.session.recovery import LostWork
@@ -36,6 +36,10 @@ class ScriptedDialogs:
 
     def __init__(self) -> None:
         self.opens: list[Path] = []
+        self.opens_many: list[list[Path]] = []
+        self.folders: list[Path] = []
+        self.existing = Existing.CANCEL
+        self.existing_questions: list[list[str]] = []
         self.saves: list[Path] = []
         self.texts: list[str] = []
         self.unsaved = Answer.DISCARD
@@ -53,6 +57,16 @@ class ScriptedDialogs:
 
     def ask_open(self, _title, _filters, _folder):
         return self.opens.pop(0) if self.opens else None
+
+    def ask_open_many(self, _title, _filters, _folder):
+        return self.opens_many.pop(0) if self.opens_many else []
+
+    def ask_folder(self, _title, _folder):
+        return self.folders.pop(0) if self.folders else None
+
+    def ask_existing(self, existing):
+        self.existing_questions.append([path.name for path in existing])
+        return self.existing
 
     def ask_save(self, _title, _filters, _proposal):
         return self.saves.pop(0) if self.saves else None

@@ -17,6 +17,8 @@ from hypothesis.extra import numpy as hnp
 
 from pinwarp.core.errors import FileFormatError, PinwarpError
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.normals import vertex_normals
+from pinwarp.io.mesh_formats.vertex_data import VertexData
 from pinwarp.io.meshes import MESH_SUFFIXES, read_mesh, write_mesh
 
 TETRAHEDRON = Mesh(
@@ -618,3 +620,46 @@ def test_the_pelves_read_as_vtk_reads_them(shared_data: Path) -> None:
         ours = read_mesh(path).mesh
         np.testing.assert_array_equal(ours.vertices, theirs.points)
         np.testing.assert_array_equal(ours.faces, theirs.regular_faces)
+
+
+# What goes with the vertices
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".obj", ".vtp", ".vtk"])
+def test_normals_are_written_for_other_programs_and_the_mesh_reads_back_the_same(tmp_path, suffix):
+    mesh, path = sphere(), tmp_path / f"a{suffix}"
+    normals = vertex_normals(mesh)
+    write_mesh(path, mesh, VertexData(normals))
+    assert np.array_equal(read_mesh(path).mesh.vertices, mesh.vertices)
+    assert np.array_equal(read_mesh(path).mesh.faces, mesh.faces)
+    seen = pv.read(path)
+    assert np.allclose(seen.point_data.active_normals, normals, atol=1e-6)
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".vtp", ".vtk"])
+def test_scalars_are_written_under_their_names(tmp_path, suffix):
+    mesh, path = sphere(), tmp_path / f"a{suffix}"
+    heights = mesh.vertices[:, 2]
+    write_mesh(path, mesh, VertexData(vertex_normals(mesh), {"height_mm": heights}))
+    assert np.array_equal(read_mesh(path).mesh.vertices, mesh.vertices)
+    if suffix == ".ply":
+        # VTK's PLY reader knows no scalars of one's own.
+        data = path.read_bytes()
+        start = data.index(b"end_header\n") + len(b"end_header\n")
+        fields = [("places", "<f8", 3), ("normals", "<f4", 3), ("height_mm", "<f4")]
+        found = np.frombuffer(data, fields, len(heights), start)["height_mm"]
+    else:
+        found = pv.read(path).point_data["height_mm"]
+    assert np.allclose(found, heights, atol=1e-6)
+
+
+def test_stl_leaves_out_what_it_has_no_room_for(tmp_path):
+    mesh, path = sphere(), tmp_path / "a.stl"
+    write_mesh(path, mesh, VertexData(vertex_normals(mesh), {"height": mesh.vertices[:, 2]}))
+    assert path.stat().st_size == 84 + 50 * len(mesh.faces)
+
+
+@pytest.mark.parametrize("name", ["", "a b", "1st", "x\nend_header"])
+def test_scalars_need_a_name_that_every_format_takes(name):
+    with pytest.raises(ValueError, match="cannot be the name"):
+        VertexData(scalars={name: np.zeros(3)})

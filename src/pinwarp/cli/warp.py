@@ -9,11 +9,11 @@ import typer
 
 from pinwarp.cli.options import Applied, Blend, Force, Penalty, SessionFile, with_options
 from pinwarp.cli.telling import BAD_USAGE, progress_bar, tell_error, tell_notes
-from pinwarp.core.errors import PinwarpError, words_of
+from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.session.exports import applied_in_words
 from pinwarp.session.files import read_session, with_meshes
-from pinwarp.session.warp_files import FileWarper, outputs_of
+from pinwarp.session.warp_files import FileWarper, outputs_of, warp_each
 
 
 def warp(
@@ -54,17 +54,14 @@ def warp(
     warper = FileWarper(opened)
     failed = 0
     with progress_bar() as progress:
-        for source, output in progress.track(
-            list(zip(sources, outputs, strict=True)), description="Warping"
+        for file in progress.track(
+            warp_each(warper, sources, outputs), total=len(sources), description="Warping"
         ):
-            try:
-                notes = warper.warp(source, output)
-            except (PinwarpError, OSError) as error:
-                # The other files do not suffer from a bad one.
-                tell_error(words_of(error))
+            if file.error:
+                tell_error(file.error)
                 failed += 1
                 continue
-            tell_notes(notes, source.name)
-            typer.echo(f"{output}: {applied_in_words(opened)}, {len(opened.pairs)} pairs")
+            tell_notes(file.notes, file.source.name)
+            typer.echo(f"{file.output}: {applied_in_words(opened)}, {len(opened.pairs)} pairs")
     if failed:
         raise typer.Exit(BAD_USAGE)

@@ -44,9 +44,9 @@ SPECS = (
     ActionSpec("import_source", "Source Landmarks…", "Ctrl+Shift+1", "", "From a CSV file"),
     ActionSpec("import_destination", "Destination Landmarks…", "Ctrl+Shift+2", "", "From a CSV"),
     ActionSpec("import_pairs", "Landmark Pairs…", "", "", "From a CSV file with both sides"),
-    ActionSpec("export_source", "Source Landmarks…"),
-    ActionSpec("export_destination", "Destination Landmarks…"),
-    ActionSpec("export_pairs", "Landmark Pairs…"),
+    ActionSpec("export_source", "&Source Landmarks…"),
+    ActionSpec("export_destination", "&Destination Landmarks…"),
+    ActionSpec("export_pairs", "&Landmark Pairs…"),
     ActionSpec(
         "export_mesh", "&Export Warped Mesh…", "Ctrl+E", "export", "Save the warped source mesh"
     ),
@@ -56,6 +56,14 @@ SPECS = (
         "Ctrl+Shift+E",
         "",
         "Pictures, pairs and quality, as HTML",
+    ),
+    ActionSpec("export_picture", "Pi&cture…", "", "", "Of the views, at any size"),
+    ActionSpec("export_animation", "&Animation…", "", "", "Turned round, or warped and back"),
+    ActionSpec("export_warped", "&Warped Landmarks…", "", "", "Where the warp carries the pairs"),
+    ActionSpec("export_coefficients", "Coe&fficients…", "", "", "Of the warp, as JSON or .npz"),
+    ActionSpec("export_script", "Scr&ipt…", "", "", "Python that warps the mesh again"),
+    ActionSpec(
+        "warp_files", "&Warp Files…", "", "", "Other meshes and landmarks, by the same warp"
     ),
     ActionSpec("quit", "&Quit", "Ctrl+Q"),
     ActionSpec("undo", "&Undo", "Ctrl+Z", "undo"),

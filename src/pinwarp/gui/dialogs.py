@@ -52,6 +52,14 @@ class _Missing(Enum):
     WITHOUT = auto()
 
 
+class Existing(Enum):
+    """What to do about files that are there already."""
+
+    REPLACE = auto()
+    KEEP = auto()
+    CANCEL = auto()
+
+
 class Dialogs:
     """The real dialogs, over one window."""
 
@@ -62,6 +70,36 @@ class Dialogs:
         """Ask for a file to read."""
         name, _ = QFileDialog.getOpenFileName(self._window, title, str(folder or ""), filters)
         return Path(name) if name else None
+
+    def ask_open_many(self, title: str, filters: str, folder: Path) -> list[Path]:
+        """Ask for files to read; none when the user would rather not."""
+        names, _ = QFileDialog.getOpenFileNames(self._window, title, str(folder), filters)
+        return [Path(name) for name in names]
+
+    def ask_folder(self, title: str, folder: Path) -> Path | None:
+        """Ask for a folder to write into."""
+        name = QFileDialog.getExistingDirectory(self._window, title, str(folder))
+        return Path(name) if name else None
+
+    def ask_existing(self, existing: Sequence[Path]) -> Existing:
+        """Ask what to do with files that would be written and are there already."""
+        box = QMessageBox(self._window)
+        box.setIcon(QMessageBox.Icon.Question)
+        box.setWindowTitle("Replace files?")
+        many = len(existing) > 1
+        there = f"{len(existing)} files are" if many else f"{existing[0].name} is"
+        box.setText(f"{there} in {existing[0].parent} already.")
+        box.setInformativeText("What is replaced cannot be brought back.")
+        if many:
+            box.setDetailedText("\n".join(path.name for path in existing))
+        roles = QMessageBox.ButtonRole
+        replace = box.addButton("Replace", roles.DestructiveRole)
+        keep = box.addButton("Leave Them Out" if many else "Leave It Out", roles.AcceptRole)
+        box.addButton("Cancel", roles.RejectRole)
+        box.setDefaultButton(keep)
+        box.exec()
+        choices = {replace: Existing.REPLACE, keep: Existing.KEEP}
+        return choices.get(box.clickedButton(), Existing.CANCEL)
 
     def ask_save(self, title: str, filters: str, proposal: Path) -> Path | None:
         """Ask for a file to write."""

@@ -11,8 +11,6 @@ from qtpy.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QMainWindow,
-    QProgressBar,
-    QPushButton,
     QSizePolicy,
     QSlider,
     QSplitter,
@@ -29,12 +27,14 @@ from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Documents
 from pinwarp.gui.exports import Exports
 from pinwarp.gui.file_tasks import FileTasks
+from pinwarp.gui.file_warping import FileWarping
 from pinwarp.gui.findings_panel import FindingsPanel
 from pinwarp.gui.findings_presenter import FindingsPresenter
 from pinwarp.gui.grid_presenter import GridPresenter
 from pinwarp.gui.guidance import Guidance
 from pinwarp.gui.guide_bar import GuideBar
 from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY, ABOUT_QUALITY
+from pinwarp.gui.job_progress import JobProgress
 from pinwarp.gui.jobs import SlowJob
 from pinwarp.gui.landmark_panel import LandmarkPanel
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
@@ -43,6 +43,7 @@ from pinwarp.gui.map_presenter import MapPresenter
 from pinwarp.gui.menus import fill_toolbar, make_menus, shortcut_groups
 from pinwarp.gui.penalty_panel import PenaltyPanel
 from pinwarp.gui.penalty_tuning import PenaltyTuning
+from pinwarp.gui.picture_export import PictureExport
 from pinwarp.gui.presenter import Presenter
 from pinwarp.gui.quality_presenter import QualityPresenter
 from pinwarp.gui.recent_files import RecentFiles
@@ -52,6 +53,7 @@ from pinwarp.gui.saving import Saving
 from pinwarp.gui.session_meshes import SessionMeshes
 from pinwarp.gui.shortcut_overlay import ShortcutOverlay
 from pinwarp.gui.snapshot_strip import SnapshotStrip
+from pinwarp.gui.stepped_job import SteppedJob
 from pinwarp.gui.table_presenter import TablePresenter
 from pinwarp.gui.view_controls import ViewControls
 from pinwarp.gui.viewport import Viewport
@@ -88,6 +90,7 @@ class MainWindow(QMainWindow):
         self.model = LandmarkModel(self)
         self.table = LandmarkTable(self.model)
         self.jobs = SlowJob(self)
+        self.stepped = SteppedJob(self)
         self.actions_by_key = make_actions(self)
         self.panel = PenaltyPanel(self.actions_by_key)
         self.snapshot_strip = SnapshotStrip(
@@ -137,7 +140,7 @@ class MainWindow(QMainWindow):
             self.editor, self.presenter, self.viewports, self.actions_by_key, self
         )
         self.statusBar().addPermanentWidget(self.warp_presenter.note)
-        self._tasks = FileTasks(self.editor, self.jobs, self._dialogs)
+        self._tasks = FileTasks(self.editor, self.jobs, self.stepped, self._dialogs)
         meshes = SessionMeshes(self._tasks, self.presenter.keep_surface)
         self.saving = Saving(self.editor, self._tasks, self._recent)
         self.recovery = Recovery(self.editor, self._tasks, self.saving, meshes, state_folder, self)
@@ -150,6 +153,8 @@ class MainWindow(QMainWindow):
             self.recovery.window_with,
         )
         self.exports = Exports(self.editor, self._tasks)
+        self._pictures = PictureExport(self.editor, self._tasks, self.viewports, self)
+        self._file_warping = FileWarping(self.editor, self._tasks)
         self._report_export = ReportExport(
             self.editor, self._tasks, self.viewports, lambda: session_name(self.editor.path)
         )
@@ -259,15 +264,8 @@ class MainWindow(QMainWindow):
     def _make_status_bar(self) -> None:
         self.hint = QLabel()
         self.statusBar().addWidget(self.hint, 1)
-        self.progress = QProgressBar()
-        self.progress.setRange(0, 100)
-        self.progress.setFixedWidth(220)
-        self.progress.hide()
-        self.cancel = QPushButton("Cancel")
-        self.cancel.setFlat(True)
-        self.cancel.hide()
-        self.statusBar().addPermanentWidget(self.progress)
-        self.statusBar().addPermanentWidget(self.cancel)
+        progress = JobProgress(self.statusBar(), (self.jobs, self.stepped))
+        self.progress, self.cancel = progress.bar, progress.cancel
 
     # Wiring
 
@@ -299,7 +297,13 @@ class MainWindow(QMainWindow):
             "set_nudge": self.guidance.ask_nudge,
             "set_pattern": self.guidance.ask_pattern,
             "load_template": self.guidance.load_template,
-            "export_passengers": self.exports.export_passengers,
+            "export_passengers": lambda: self.exports.export_warped(passengers=True),
+            "export_warped": lambda: self.exports.export_warped(passengers=False),
+            "export_coefficients": self.exports.export_coefficients,
+            "export_script": self.exports.export_script,
+            "export_picture": self._pictures.ask_for_picture,
+            "export_animation": self._pictures.ask_for_animation,
+            "warp_files": self._file_warping.ask_and_warp,
             "shortcuts": self.shortcuts.toggle,
             "select_none": editor.select,
             "about": lambda: self._dialogs.tell("About pinwarp", ABOUT),
@@ -325,10 +329,6 @@ class MainWindow(QMainWindow):
             viewport.files_dropped.connect(
                 lambda paths, side=side: documents.open_files(side, paths)
             )
-        self.jobs.started.connect(self._on_job_started)
-        self.jobs.progressed.connect(self._on_job_progressed)
-        self.jobs.ended.connect(self._on_job_ended)
-        self.cancel.clicked.connect(self.jobs.cancel)
         self._tasks.said.connect(self._say)
         editor.session_changed.connect(self._on_session)
         editor.selection_changed.connect(self._on_session)
@@ -379,10 +379,13 @@ class MainWindow(QMainWindow):
         for key in ("delete_side", "delete_landmark", "select_none"):
             actions[key].setEnabled(has_selection)
         session = editor.session
-        actions["export_mesh"].setEnabled(
-            session.mesh(Side.SOURCE) is not None and bool(session.pairs)
-        )
-        actions["export_report"].setEnabled(bool(session.pairs))
+        has_mesh = {side: session.mesh(side) is not None for side in Side}
+        for key in ("export_mesh", "export_script"):
+            actions[key].setEnabled(has_mesh[Side.SOURCE] and bool(session.pairs))
+        for key in ("export_report", "export_warped", "export_coefficients", "warp_files"):
+            actions[key].setEnabled(bool(session.pairs))
+        actions["export_picture"].setEnabled(any(has_mesh.values()))
+        actions["export_animation"].setEnabled(any(has_mesh.values()))
         self.guidance.show()
 
     def _on_view(self, _changed: object = None) -> None:
@@ -394,27 +397,12 @@ class MainWindow(QMainWindow):
         self.opacity.setValue(round(getattr(view, self.maps.opacity_key) * 100))
         self.guidance.show()
 
-    # Slow jobs
-
-    def _on_job_started(self, title: str) -> None:
-        self.progress.setFormat(title)
-        self.progress.setValue(0)
-        self.progress.show()
-        self.cancel.show()
-
-    def _on_job_progressed(self, share: float, stage: str) -> None:
-        self.progress.setValue(round(100 * share))
-        self.progress.setFormat(f"{stage} – %p%")
-
-    def _on_job_ended(self) -> None:
-        self.progress.hide()
-        self.cancel.hide()
-
     @property
     def is_settled(self) -> bool:
         """Whether everything asked for is done and shown."""
         parts = (self.presenter, self.quality, self.tuning, self.grid, self.maps)
-        return self.jobs.is_idle and all(part.is_settled for part in parts)
+        idle = self.jobs.is_idle and self.stepped.is_idle
+        return idle and all(part.is_settled for part in parts)
 
     # The end
 
@@ -435,6 +423,7 @@ class MainWindow(QMainWindow):
         self._settings.setValue("layout", self.saveState())
         self.recovery.shut_down()
         self.jobs.shut_down()
+        self.stepped.shut_down()
         self.grid.shut_down()
         self.warp_presenter.shut_down()
         self.findings_presenter.shut_down()

@@ -6,6 +6,7 @@ look the same on every graphics driver. What lies behind the surface is painted 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -52,6 +53,10 @@ class MarkerLayer(QWidget):
         self.unit = ""
         self.radius = RADIUS
         self.painted_for: object = None
+        # For a picture: signs in so many pixels, places seen from its middle, with a frame or not.
+        self.pixels_per_pixel = 1.0
+        self.offset = (0.0, 0.0)
+        self.framed = True
         self._markers: tuple[Marker, ...] = ()
         self._badge = ""
         # Which places the bone hides, as long as the camera stands still.
@@ -96,7 +101,10 @@ class MarkerLayer(QWidget):
         """Return where the landmarks are on the screen: (n, 2) logical pixels."""
         if not self._markers:
             return np.zeros((0, 2))
-        return self._canvas.project(np.array([marker.position for marker in self._markers]))
+        return self._project([marker.position for marker in self._markers])
+
+    def _project(self, positions: Sequence[Position]) -> NDArray:
+        return self._canvas.project(np.array(positions)) + self.offset
 
     def hidden(self) -> NDArray[np.bool_]:
         """Return which landmarks lie behind the surface as the camera stands now."""
@@ -124,8 +132,9 @@ class MarkerLayer(QWidget):
         self.painted_for = self._canvas.view_key()
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        self._paint_title(painter)
-        if self._canvas.bone is not None:
+        if self.framed:
+            self._paint_title(painter)
+        if self.framed and self._canvas.bone is not None:
             length = self._canvas.unit_per_pixel
             paint_scale_bar(painter, QRectF(self.rect()), length, self.unit)
         if self.hint:
@@ -223,8 +232,8 @@ class MarkerLayer(QWidget):
             return from_right
         selected = {marker.name for marker in self._markers if marker.selected}
         faint = {marker.name for marker, out in zip(self._markers, hidden, strict=True) if out}
-        starts = self._canvas.project(np.array([arrow.start for arrow in self.arrows]))
-        ends = self._canvas.project(np.array([arrow.end for arrow in self.arrows]))
+        starts = self._project([arrow.start for arrow in self.arrows])
+        ends = self._project([arrow.end for arrow in self.arrows])
         for arrow, start, end in zip(self.arrows, starts.tolist(), ends.tolist(), strict=True):
             chosen = arrow.name in selected
             # What is asked about is seen even behind the bone.
@@ -248,7 +257,7 @@ class MarkerLayer(QWidget):
         hidden: NDArray[np.bool_],
         leftwards: set[str],
     ) -> None:
-        ratio = self.devicePixelRatioF()
+        ratio = self.devicePixelRatioF() * self.pixels_per_pixel
         # Hidden ones first, selected ones last, so that what matters lies on top.
         order = sorted(
             range(len(self._markers)),

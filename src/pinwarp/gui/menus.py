@@ -12,7 +12,7 @@ SEPARATOR = "-"
 MENUS = {
     "&File": (
         "open_source open_destination - open_session @recent restore open_sample - save save_as - "
-        "@import @export export_mesh export_report - quit"
+        "@import @export export_mesh export_report warp_files - quit"
     ),
     "&Edit": (
         "undo redo - copy paste - rename rename_many note - "
@@ -56,8 +56,9 @@ SUBMENUS = {
         "map_uncertainty - map_next",
     ),
     "@export": (
-        "E&xport Landmarks",
-        "export_source export_destination export_pairs export_passengers",
+        "E&xport",
+        "export_picture export_animation - export_source export_destination "
+        "export_pairs export_warped export_passengers - export_coefficients export_script",
     ),
 }
 TOOLBAR = (

@@ -16,11 +16,15 @@ from pinwarp.io.mesh_formats.ply import read_ply, write_ply
 from pinwarp.io.mesh_formats.stl import read_stl, write_stl
 from pinwarp.io.mesh_formats.surface import BrokenMeshError
 from pinwarp.io.mesh_formats.triangles import mesh_of
+from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
 from pinwarp.io.mesh_formats.vtk_legacy import read_legacy_vtk
 from pinwarp.io.mesh_formats.vtp import read_vtp
 from pinwarp.io.reading import read_content
 
 MESH_SUFFIXES = (".stl", ".ply", ".obj", ".vtp", ".vtk")
+# What has room for more than places and triangles.
+NORMALS_SUFFIXES = (".ply", ".obj", ".vtp", ".vtk")
+SCALARS_SUFFIXES = (".ply", ".vtp", ".vtk")
 
 _READERS = {
     ".stl": read_stl,
@@ -31,20 +35,20 @@ _READERS = {
 }
 
 
-def _write_vtp(path: Path, mesh: Mesh) -> None:
+def _write_vtp(path: Path, mesh: Mesh, extras: VertexData) -> None:
     # VTK is loaded only for what needs it.
     from pinwarp.io.mesh_formats.polydata import write_vtp
 
-    write_vtp(path, mesh)
+    write_vtp(path, mesh, extras)
 
 
-def _write_legacy_vtk(path: Path, mesh: Mesh) -> None:
+def _write_legacy_vtk(path: Path, mesh: Mesh, extras: VertexData) -> None:
     from pinwarp.io.mesh_formats.polydata import write_legacy_vtk
 
-    write_legacy_vtk(path, mesh)
+    write_legacy_vtk(path, mesh, extras)
 
 
-_WRITERS = {
+_WRITERS: dict[str, Callable[[Path, Mesh, VertexData], None]] = {
     ".stl": write_stl,
     ".ply": write_ply,
     ".obj": write_obj,
@@ -143,7 +147,7 @@ def read_mesh(
     return MeshFile(content.path, mesh, content.sha256, notes)
 
 
-def write_mesh(path: str | Path, mesh: Mesh) -> None:
+def write_mesh(path: str | Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     """Write a mesh in the format of the file's suffix, all of it or nothing.
 
     Parameters
@@ -152,6 +156,9 @@ def write_mesh(path: str | Path, mesh: Mesh) -> None:
         The file. All formats but STL keep double precision; STL knows only single.
     mesh
         The mesh.
+    extras
+        Normals (PLY, OBJ, VTP, VTK) and scalars (PLY, VTP, VTK) to go with its vertices; STL has
+        room for neither.
 
     Raises
     ------
@@ -174,7 +181,7 @@ def write_mesh(path: str | Path, mesh: Mesh) -> None:
         raise _unknown_suffix(path)
     with atomic_path(path) as temporary:
         try:
-            write(temporary, mesh)
+            write(temporary, mesh, extras)
         except BrokenMeshError as error:
             raise FileFormatError(path, str(error)) from error
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.core.errors import PinwarpError
+from pinwarp.core.errors import PinwarpError, words_of
 from pinwarp.core.landmarks import Side, positions
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.mirror import mirrored_points
@@ -151,3 +152,47 @@ class FileWarper:
             assert self._mesh is not None, "checked at the start"
             places = mirrored_points(places, self._mesh, axis)
         return self._spline.evaluate(places)
+
+
+@dataclass(frozen=True)
+class WarpedFile:
+    """What became of one file.
+
+    Attributes
+    ----------
+    source, output
+        The file and where it went.
+    notes
+        What was changed or left out, as sentences.
+    error
+        Why it failed, as a sentence; empty where it did not.
+    """
+
+    source: Path
+    output: Path
+    notes: tuple[str, ...] = ()
+    error: str = ""
+
+
+def warp_each(
+    warper: FileWarper, sources: Sequence[Path], outputs: Sequence[Path]
+) -> Iterator[WarpedFile]:
+    """Warp files one after the other; the others do not suffer from a bad one.
+
+    Parameters
+    ----------
+    warper
+        Carries them.
+    sources, outputs
+        What is warped and where it goes, one by one; see :func:`outputs_of`.
+
+    Yields
+    ------
+    WarpedFile
+        As soon as it is done.
+    """
+    for source, output in zip(sources, outputs, strict=True):
+        try:
+            yield WarpedFile(source, output, warper.warp(source, output))
+        except (PinwarpError, OSError) as error:
+            yield WarpedFile(source, output, error=words_of(error))
