@@ -342,9 +342,9 @@ def import_pairs(session: Session, landmarks: Iterable[Landmark]) -> Session:
     known = {landmark.name for landmark in session.landmarks}
     for side in Side:
         session = import_side(session, side, arriving)
-    # What is new comes whole: it may be disabled.
-    whole = {landmark.name: landmark for landmark in arriving if landmark.name not in known}
-    return replace(session, landmarks=tuple(whole.get(x.name, x) for x in session.landmarks))
+    # A new pair may come switched off; one that is here keeps its state.
+    off = {landmark.name for landmark in arriving if not landmark.enabled} - known
+    return set_enabled(session, off, False)
 
 
 def paste(session: Session, rows: Iterable[PastedLandmark]) -> Session:
