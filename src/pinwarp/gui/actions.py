@@ -22,6 +22,7 @@ class ActionSpec:
     icon: str = ""
     tip: str = ""
     checkable: bool = False
+    button: str = ""
 
 
 SPECS = (
@@ -39,6 +40,7 @@ SPECS = (
     ActionSpec("open_sample", "Open Sample &Bones", "", "", "Two femurs to try things on"),
     ActionSpec("save", "&Save Session", "Ctrl+S", "save", "Save the session"),
     ActionSpec("save_as", "Save Session &As…", "Ctrl+Shift+S"),
+    ActionSpec("restore", "Restore &Unsaved Work…", "", "", "Of windows that ended unexpectedly"),
     ActionSpec("import_source", "Source Landmarks…", "Ctrl+Shift+1", "", "From a CSV file"),
     ActionSpec("import_destination", "Destination Landmarks…", "Ctrl+Shift+2", "", "From a CSV"),
     ActionSpec("import_pairs", "Landmark Pairs…", "", "", "From a CSV file with both sides"),
@@ -90,6 +92,13 @@ SPECS = (
     ),
     ActionSpec("fit", "&Fit Both Views", "Home", "fit", "Look at both bones as a whole"),
     ActionSpec("accept_ghost", "&Accept Ghost", "Space", "", "Place it where it is expected"),
+    ActionSpec(
+        "place_suggested",
+        "Place at &Suggested Place",
+        "Shift+Space",
+        "",
+        "Where the uncertainty map says that the next landmark helps most",
+    ),
     ActionSpec("snap", "S&nap to Surface", "S", "", "Put the selection back onto the bone"),
     ActionSpec("lock", "&Lock Landmarks", "L", "lock", "Freeze all landmarks", True),
     ActionSpec("set_nudge", "Nudge Ste&p…", "", "", "How far an arrow key moves a landmark"),
@@ -120,7 +129,7 @@ SPECS = (
     ActionSpec("apply_affine", "&Affine Fit Only", "", "", "Turned, moved, sized, sheared", True),
     ActionSpec("apply_similarity", "&Similarity Fit Only", "", "", "Turned, moved, sized", True),
     ActionSpec("apply_rigid", "&Rigid Fit Only", "", "", "Turned and moved", True),
-    ActionSpec("play_blend", "&Play Blend", "B", "play", "From the source to the warp", True),
+    ActionSpec("play_blend", "&Play Blend", "Shift+B", "play", "From the source to the warp", True),
     ActionSpec("copy_figures", "&Copy Figures", "", "", "The warp taken apart, as a table"),
     ActionSpec("grid_none", "&None", "", "", "No grid", True),
     ActionSpec("grid_box", "&Box", "", "", "Straight on the source, bent by the warp", True),
@@ -128,10 +137,54 @@ SPECS = (
     ActionSpec("grid_plane_y", "Plane Across &Y", "", "", "Of the source's axes", True),
     ActionSpec("grid_plane_z", "Plane Across &Z", "", "", "Of the source's axes", True),
     ActionSpec("grid_next", "N&ext Grid", "D"),
+    ActionSpec(
+        "take_suggested",
+        "Take &Suggested Penalty",
+        "T",
+        "",
+        "The one with the least leave-one-out error",
+    ),
+    ActionSpec(
+        "swap_penalty",
+        # Behind the tab stands the key that is held; the action itself has none.
+        "Compare with &Previous Penalty\tB (hold)",
+        "",
+        "",
+        "Go back to the previous penalty; hold B only to look at it",
+    ),
+    ActionSpec(
+        "snapshot",
+        "Take S&napshot",
+        "P",
+        "",
+        "A picture of the warp at this penalty",
+        button="Snapshot",
+    ),
+    ActionSpec("sweep", "S&weep: 5 Snapshots", "", "", "From interpolation to the affine fit"),
+    ActionSpec("clear_snapshots", "&Clear Snapshots"),
+    ActionSpec(
+        "show_curve", "Penalty C&urve", "", "", "Leave-one-out error and residual", True, "Curve"
+    ),
     ActionSpec("markers_larger", "La&rger Landmarks", "]"),
     ActionSpec("markers_smaller", "S&maller Landmarks", "["),
     ActionSpec("wireframe", "W&ireframe Bones", "Shift+W", "", "Draw edges only", True),
     ActionSpec("section", "&Cross-Section", "X", "section", "Cut both bones open", True),
+    ActionSpec("map_none", "&No Map", "", "", "The warped source in one colour", True),
+    ActionSpec("map_distance", "&Distance to the Destination", "", "", "Where it misses", True),
+    ActionSpec("map_volume", "&Volume Change", "", "", "Where it swells and shrinks", True),
+    ActionSpec(
+        "map_largest_stretch", "&Largest Stretch", "", "", "In the direction that grows most", True
+    ),
+    ActionSpec(
+        "map_smallest_stretch",
+        "&Smallest Stretch",
+        "",
+        "",
+        "In the direction that grows least",
+        True,
+    ),
+    ActionSpec("map_uncertainty", "&Uncertainty", "", "", "Where landmarks are missing", True),
+    ActionSpec("map_next", "Next &Map", "M", "", "Colour the warped source by something else"),
     ActionSpec("link_next", "&Next Camera Link", "K", "link_linked"),
     ActionSpec("shortcuts", "&Shortcuts", "F1", "", "All keys and mouse gestures"),
     ActionSpec("about", "&About pinwarp"),
@@ -152,6 +205,8 @@ def make_actions(parent: QObject) -> dict[str, QAction]:
             action.setShortcut(QKeySequence(spec.shortcut))
             words = f"{words} ({spec.shortcut})"
         action.setToolTip(words)
+        if spec.button:
+            action.setIconText(spec.button)
         if spec.icon:
             action.setIcon(icon(spec.icon))
         actions[spec.key] = action

@@ -11,13 +11,17 @@ from numpy.typing import NDArray
 from qtpy.QtCore import QPointF, Signal
 from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QWidget
+from vtkmodules.vtkCommonCore import vtkLookupTable
 
 from pinwarp.core.landmarks import Side
 from pinwarp.gui import theme
 from pinwarp.gui.camera_pose import Matrix, Pose, best_frame, fitted
+from pinwarp.gui.depth import WHOLE_DEPTH
+from pinwarp.gui.drawn_folds import DrawnFolds, FoldedSurface
 from pinwarp.gui.drawn_lines import DrawnLines
 from pinwarp.gui.drawn_mesh import DrawnMesh, OverlayWarp
 from pinwarp.gui.fast_view import FastView
+from pinwarp.gui.legend import Legend, LegendContent
 from pinwarp.gui.marker_layer import MarkerLayer
 from pinwarp.gui.scene import Scene
 from pinwarp.gui.section import Section
@@ -30,6 +34,9 @@ _OVERLAY = {"specular": 0.2, "specular_power": 20}
 _LIGHTS = (((-0.5, 0.7, 1.0), 0.85), ((0.9, 0.1, 0.7), 0.42), ((0.0, 0.8, -1.0), 0.25))
 # A frame slower than this is replaced by a stand-in's while something moves.
 SLOW_FRAME = 0.040
+# Where an overlay that shows a map and the bone stand in the picture's depth: else the bone would
+# hide the half of the map that lies inside it.
+MAP_DEPTH, DEPTH_BEHIND_MAP = (0.0, 0.5), (0.5, 1.0)
 
 
 class Canvas(FastView):
@@ -41,6 +48,7 @@ class Canvas(FastView):
         super().__init__(parent)
         self.side = side
         self.layer = MarkerLayer(self, side.value.capitalize())
+        self.map_legend = Legend(self)
         self.surface: Surface | None = None
         self.is_placing_camera = False
         self._scene: Scene | None = None
@@ -51,6 +59,7 @@ class Canvas(FastView):
         self._coarse = DrawnMesh(self, "surface stand-in", **bone)
         self._overlay = DrawnMesh(self, "overlay", **warped)
         self._coarse_overlay = DrawnMesh(self, "overlay stand-in", **warped)
+        self._folds = DrawnFolds(self)
         self._grid = DrawnLines(self, "grid", color=theme.INK, opacity=0.4)
         self._full_frame_seconds = 0.0
         self._warping = self._orbiting = False
@@ -107,8 +116,7 @@ class Canvas(FastView):
             self.update()
         if scene.section != (before.section if before is not None else None):
             self._show_section(scene.section)
-        overlay = (scene.overlay_visible, scene.overlay_opacity)
-        if before is None or overlay != (before.overlay_visible, before.overlay_opacity):
+        if before is None or scene.overlay != before.overlay:
             self._choose_detail()
 
     def show_overlay(self, warps: Sequence[OverlayWarp | None]) -> None:
@@ -129,7 +137,29 @@ class Canvas(FastView):
         """Show no warped source."""
         self._overlay.remove()
         self._coarse_overlay.remove()
-        self.update()
+        self._folds.show(None)
+        self._choose_detail()
+
+    def show_map(
+        self, levels: Sequence[NDArray[np.float32] | None], table: vtkLookupTable | None
+    ) -> None:
+        """Colour the overlay, in full and the stand-in; plain where there are no levels."""
+        for drawn, colours in zip((self._overlay, self._coarse_overlay), levels, strict=True):
+            drawn.colour(colours, table)
+        self._choose_detail()
+
+    def show_legend(self, content: LegendContent | None) -> None:
+        """Show the legend of a map, or none."""
+        if content != self.map_legend.content:
+            self.map_legend.show_content(content)
+            # Labels give way to it.
+            self.layer.update()
+
+    def show_folds(self, folded: FoldedSurface | None) -> None:
+        """Show where the warp turns the surface inside out."""
+        self._folds.show(folded)
+        self._folds.set_clip(self._section.plane if self._section is not None else None)
+        self._choose_detail()
 
     def show_grid(self, lines: NDArray | None) -> None:
         """Show (lines, samples, 3) positions as lines, or none; the camera stays where it is."""
@@ -138,7 +168,7 @@ class Canvas(FastView):
         else:
             self._grid.write(lines)
         self.renderer.ResetCameraClippingRange()
-        self.update()
+        self._choose_detail()
 
     @property
     def grid_lines(self) -> NDArray | None:
@@ -162,6 +192,7 @@ class Canvas(FastView):
         plane = self._section.plane if self._section is not None else None
         for drawn in (self._full, self._coarse, self._overlay, self._coarse_overlay):
             drawn.set_clip(plane)
+        self._folds.set_clip(plane)
         self.update()
 
     @property
@@ -213,9 +244,17 @@ class Canvas(FastView):
             replaced = coarse and stand_in.actor is not None
             full.set_visible(visible and not replaced)
             stand_in.set_visible(visible and replaced)
-            for drawn in (full, stand_in):
-                if scene is not None and drawn.actor is not None and full is self._overlay:
-                    drawn.actor.prop.opacity = scene.overlay_opacity
+        for drawn in (self._overlay, self._coarse_overlay):
+            if scene is not None and drawn.actor is not None:
+                coloured = drawn.is_coloured
+                drawn.actor.prop.opacity = scene.map_opacity if coloured else scene.overlay_opacity
+        self._folds.set_visible(overlay_visible)
+        shows_map = overlay_visible and self._overlay.is_coloured
+        for drawn in (self._full, self._coarse):
+            drawn.set_depth(DEPTH_BEHIND_MAP if shows_map else WHOLE_DEPTH)
+        front = MAP_DEPTH if shows_map else WHOLE_DEPTH
+        for over in (self._overlay, self._coarse_overlay, self._folds, self._grid):
+            over.set_depth(front)
         self.update()
 
     def paintGL(self) -> None:
@@ -344,3 +383,4 @@ class Canvas(FastView):
         """Keep the sheet as large as the picture."""
         super().resizeEvent(event)
         self.layer.resize(event.size())
+        self.map_legend.place()

@@ -8,6 +8,8 @@ import numpy as np
 import pyvista as pv
 from numpy.typing import ArrayLike, NDArray
 
+from pinwarp.gui.depth import WHOLE_DEPTH, Depth, squeeze
+
 
 class DrawnLines:
     """One actor of lines whose places can be rewritten in place.
@@ -28,6 +30,8 @@ class DrawnLines:
         self._look = look
         self._shape: tuple[int, ...] | None = None
         self._polydata: pv.PolyData | None = None
+        self._actor: pv.Actor | None = None
+        self._depth = WHOLE_DEPTH
 
     @property
     def lines(self) -> NDArray[np.float32] | None:
@@ -39,7 +43,7 @@ class DrawnLines:
     def remove(self) -> None:
         """Take the lines out of the picture."""
         self._plotter.remove_actor(self._name, render=False)
-        self._polydata = self._shape = None
+        self._polydata = self._shape = self._actor = None
 
     def write(self, lines: ArrayLike) -> None:
         """Draw (lines, samples, 3) places; in place where as many were drawn before."""
@@ -52,12 +56,19 @@ class DrawnLines:
             self._polydata.GetPoints().Modified()
             self._polydata.Modified()
 
+    def set_depth(self, depth: Depth) -> None:
+        """Draw them in a share of the picture's depth, before or behind other things."""
+        if self._actor is not None and depth != self._depth:
+            self._depth = depth
+            squeeze(self._actor, depth)
+
     def _show(self, places: NDArray[np.float32]) -> None:
         count, samples, _ = self._shape = places.shape
         rows = np.arange(count * samples).reshape(count, samples)
         cells = np.insert(rows, 0, samples, axis=1)
         self._polydata = pv.PolyData(places.reshape(-1, 3), lines=cells.ravel())
-        self._plotter.add_mesh(
+        self._depth = WHOLE_DEPTH
+        self._actor = self._plotter.add_mesh(
             self._polydata,
             name=self._name,
             copy_mesh=False,

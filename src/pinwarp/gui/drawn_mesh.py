@@ -8,10 +8,17 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
+from vtkmodules.vtkCommonCore import vtkLookupTable
 from vtkmodules.vtkCommonDataModel import vtkPlane
 
 from pinwarp.core.mesh import Mesh
+from pinwarp.gui.depth import WHOLE_DEPTH, Depth, squeeze
 from pinwarp.gui.surface import triangles
+
+# The array of point data that a map's levels stand in.
+_LEVELS = "map"
+# Colours are read off a map: little of the light may change them.
+_READABLE = {"ambient": 0.45, "diffuse": 0.62, "specular": 0.0}
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +53,9 @@ class DrawnMesh:
         self._faces: NDArray | None = None
         self._clip: vtkPlane | None = None
         self._culling = "none"
+        self._plain: dict[str, float] = {}
+        self._depth = WHOLE_DEPTH
+        self.is_coloured = False
         self.polydata: pv.PolyData | None = None
         self.actor: pv.Actor | None = None
 
@@ -53,6 +63,7 @@ class DrawnMesh:
         """Take the mesh out of the picture."""
         self._plotter.remove_actor(self._name, render=False)
         self._faces = self.polydata = self.actor = None
+        self.is_coloured = False
 
     def show(self, polydata: pv.PolyData, **look: Any) -> None:
         """Draw a mesh that has its normals already."""
@@ -68,6 +79,9 @@ class DrawnMesh:
             **(self._look | look),
         )
         self._culling = look.get("culling", "none")
+        self._plain = {key: getattr(self.actor.prop, key) for key in _READABLE}
+        self.is_coloured = False
+        self._depth = WHOLE_DEPTH
         self.set_clip(self._clip)
 
     def write(
@@ -91,6 +105,36 @@ class DrawnMesh:
         self.polydata.GetPoints().Modified()
         self.polydata.GetPointData().GetNormals().Modified()
         self.polydata.Modified()
+
+    def colour(self, levels: NDArray[np.float32] | None, table: vtkLookupTable | None) -> None:
+        """Colour the vertices by what a table says of their levels; plain without any."""
+        if self.actor is None or self.polydata is None:
+            return
+        mapper = self.actor.mapper
+        self.is_coloured = levels is not None
+        for key, value in (_READABLE if self.is_coloured else self._plain).items():
+            setattr(self.actor.prop, key, value)
+        mapper.SetScalarVisibility(self.is_coloured)
+        if levels is None:
+            return
+        data = self.polydata.point_data
+        if _LEVELS in data:
+            data[_LEVELS][:] = levels
+            self.polydata.GetPointData().GetArray(_LEVELS).Modified()
+        else:
+            data.set_array(levels.copy(), _LEVELS)
+        mapper.SetScalarModeToUsePointFieldData()
+        mapper.SelectColorArray(_LEVELS)
+        mapper.SetLookupTable(table)
+        mapper.SetUseLookupTableScalarRange(True)
+        # The colour is looked up for each pixel: between vertices no colour comes out of nowhere.
+        mapper.SetInterpolateScalarsBeforeMapping(True)
+
+    def set_depth(self, depth: Depth) -> None:
+        """Draw it in a share of the picture's depth, before or behind other things."""
+        if self.actor is not None and depth != self._depth:
+            self._depth = depth
+            squeeze(self.actor, depth)
 
     def set_clip(self, plane: vtkPlane | None) -> None:
         """Draw only what lies on the positive side of a plane, or everything."""

@@ -38,18 +38,26 @@ from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY, ABOUT_QUALITY
 from pinwarp.gui.jobs import SlowJob
 from pinwarp.gui.landmark_panel import LandmarkPanel
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
+from pinwarp.gui.map_panel import MapPanel
+from pinwarp.gui.map_presenter import MapPresenter
 from pinwarp.gui.menus import fill_toolbar, make_menus, shortcut_groups
 from pinwarp.gui.penalty_panel import PenaltyPanel
+from pinwarp.gui.penalty_tuning import PenaltyTuning
 from pinwarp.gui.presenter import Presenter
 from pinwarp.gui.quality_presenter import QualityPresenter
 from pinwarp.gui.recent_files import RecentFiles
+from pinwarp.gui.recovery import Recovery
 from pinwarp.gui.report_export import ReportExport
+from pinwarp.gui.saving import Saving
+from pinwarp.gui.session_meshes import SessionMeshes
 from pinwarp.gui.shortcut_overlay import ShortcutOverlay
+from pinwarp.gui.snapshot_strip import SnapshotStrip
 from pinwarp.gui.table_presenter import TablePresenter
 from pinwarp.gui.view_controls import ViewControls
 from pinwarp.gui.viewport import Viewport
 from pinwarp.gui.warp_panel import WarpPanel
 from pinwarp.gui.warp_presenter import WarpPresenter
+from pinwarp.io.file_names import session_name
 from pinwarp.io.samples import sample_session
 from pinwarp.session.editor import Editor
 
@@ -63,19 +71,30 @@ class MainWindow(QMainWindow):
         Where the layout and the recent files are remembered.
     dialogs
         Asks and tells; the real ones when None.
+    state_folder
+        Where unsaved work is kept in case the program dies; None keeps none.
     """
 
-    def __init__(self, settings: QSettings, dialogs: Dialogs | None = None) -> None:
+    def __init__(
+        self,
+        settings: QSettings,
+        dialogs: Dialogs | None = None,
+        state_folder: Path | None = None,
+    ) -> None:
         super().__init__()
         self._settings = settings
         self.editor = Editor()
         self.viewports = {side: Viewport(side) for side in Side}
         self.model = LandmarkModel(self)
         self.table = LandmarkTable(self.model)
-        self.panel = PenaltyPanel()
         self.jobs = SlowJob(self)
         self.actions_by_key = make_actions(self)
+        self.panel = PenaltyPanel(self.actions_by_key)
+        self.snapshot_strip = SnapshotStrip(
+            [self.actions_by_key[key] for key in ("snapshot", "sweep", "clear_snapshots")]
+        )
         self.warp_panel = WarpPanel(self.actions_by_key)
+        self.map_panel = MapPanel(self.actions_by_key["place_suggested"])
         self.findings = FindingsPanel()
         self.landmarks = LandmarkPanel(self.table, self.findings, self.actions_by_key)
         self._dialogs = dialogs or Dialogs(self)
@@ -83,6 +102,10 @@ class MainWindow(QMainWindow):
         self._lay_out()
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
         self.quality = QualityPresenter(self.presenter)
+        self.maps = MapPresenter(
+            self.editor, self.presenter, self.viewports, self.map_panel, self.actions_by_key, self
+        )
+        self.statusBar().addPermanentWidget(self.maps.fold_note)
         self.quality.quality_changed.connect(self.presenter.show_quality)
         self.findings_presenter = FindingsPresenter(
             self.editor,
@@ -92,6 +115,17 @@ class MainWindow(QMainWindow):
             self.actions_by_key,
             self.presenter.requests,
             self._say,
+        )
+        self.tuning = PenaltyTuning(
+            self.editor,
+            self.presenter,
+            self.quality,
+            self.viewports,
+            self.panel,
+            self.snapshot_strip,
+            self.actions_by_key,
+            self._say,
+            self,
         )
         self._bone_edits = BoneEdits(self.editor, self.actions_by_key, self)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
@@ -104,12 +138,20 @@ class MainWindow(QMainWindow):
         )
         self.statusBar().addPermanentWidget(self.warp_presenter.note)
         self._tasks = FileTasks(self.editor, self.jobs, self._dialogs)
+        meshes = SessionMeshes(self._tasks, self.presenter.keep_surface)
+        self.saving = Saving(self.editor, self._tasks, self._recent)
+        self.recovery = Recovery(self.editor, self._tasks, self.saving, meshes, state_folder, self)
         self.documents = Documents(
-            self.editor, self._tasks, self._recent, self.presenter.keep_surface
+            self.editor,
+            self._tasks,
+            self._recent,
+            self.saving,
+            meshes,
+            self.recovery.window_with,
         )
         self.exports = Exports(self.editor, self._tasks)
         self._report_export = ReportExport(
-            self.editor, self._tasks, self.viewports, lambda: self.documents.name
+            self.editor, self._tasks, self.viewports, lambda: session_name(self.editor.path)
         )
         self.guidance = Guidance(
             self.editor, self.presenter, self.documents, self._dialogs, self.guide_bar, self.hint
@@ -149,18 +191,33 @@ class MainWindow(QMainWindow):
         landmarks = self._add_dock("landmarks", "Landmarks", self.landmarks, right)
         warp = self._add_dock("warp", "Warp", self.warp_panel, right)
         self.tabifyDockWidget(landmarks, warp)
+        self.tabifyDockWidget(warp, self._add_dock("map", "Map", self.map_panel, right))
         self.setTabPosition(right, QTabWidget.TabPosition.North)
         landmarks.raise_()
-        penalty = self._add_dock(
-            "penalty", "Warping penalty", self.panel, Qt.DockWidgetArea.BottomDockWidgetArea
+        penalty = QWidget()
+        rows = QVBoxLayout(penalty)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(0)
+        rows.addWidget(self.snapshot_strip)
+        rows.addWidget(self.panel, 1)
+        self._penalty_dock = self._add_dock(
+            "penalty", "Warping penalty", penalty, Qt.DockWidgetArea.BottomDockWidgetArea
         )
         # The table keeps the whole height of the right edge.
         self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
         self.resizeDocks([landmarks], [430], Qt.Orientation.Horizontal)
-        self.resizeDocks([penalty], [90], Qt.Orientation.Vertical)
+        self._fit_penalty_dock()
         self._make_menus()
         self._make_toolbar()
         self._make_status_bar()
+
+    def _fit_penalty_dock(self) -> None:
+        """Give the penalty no more height than it needs: the rest is the bones'."""
+        dock = self._penalty_dock
+        # What has just appeared or gone counts now, not only at the next turn of the event loop.
+        for widget in (self.panel, dock.widget(), dock):
+            widget.layout().activate()
+        self.resizeDocks([dock], [1], Qt.Orientation.Vertical)
 
     def _add_dock(
         self, key: str, title: str, widget: QWidget, area: Qt.DockWidgetArea
@@ -221,8 +278,9 @@ class MainWindow(QMainWindow):
             "open_source": lambda: documents.ask_and_open_mesh(Side.SOURCE),
             "open_destination": lambda: documents.ask_and_open_mesh(Side.DESTINATION),
             "open_sample": self.open_sample,
-            "save": documents.save,
-            "save_as": documents.save_as,
+            "save": self.saving.save,
+            "save_as": self.saving.save_as,
+            "restore": self.recovery.offer_again,
             "import_source": lambda: documents.ask_and_import_landmarks(Side.SOURCE),
             "import_destination": lambda: documents.ask_and_import_landmarks(Side.DESTINATION),
             "import_pairs": lambda: documents.ask_and_import_landmarks(None),
@@ -254,9 +312,15 @@ class MainWindow(QMainWindow):
         actions["overlay"].toggled.connect(lambda on: editor.look(overlay=on))
         actions["lock"].toggled.connect(lambda on: editor.look(locked=on))
         actions["guide"].toggled.connect(self.guidance.switch)
+        self.snapshot_strip.height_changed.connect(self._fit_penalty_dock)
+        actions["show_curve"].toggled.connect(self._fit_penalty_dock)
         self.presenter.requests.refused.connect(self._say)
         self.guidance.said.connect(self._say)
-        self.opacity.valueChanged.connect(lambda value: editor.look(opacity=value / 100))
+        self.maps.refused.connect(self._say)
+        self.maps.map_changed.connect(self._on_view)
+        self.opacity.valueChanged.connect(
+            lambda value: editor.look(**{self.maps.opacity_key: value / 100})
+        )
         for side, viewport in self.viewports.items():
             viewport.files_dropped.connect(
                 lambda paths, side=side: documents.open_files(side, paths)
@@ -274,7 +338,7 @@ class MainWindow(QMainWindow):
 
     def open_sample(self) -> None:
         """Open the sample bones as a new session, asking about unsaved work first."""
-        if self.documents.may_lose_changes():
+        if self.saving.may_lose_changes():
             self.documents.open_session(sample_session(), as_new=True)
 
     def _say(self, text: str) -> None:
@@ -293,14 +357,14 @@ class MainWindow(QMainWindow):
             self._recent_menu.addAction("Clear").triggered.connect(self._recent.clear)
 
     def _open_recent(self, path: Path) -> None:
-        if self.documents.may_lose_changes():
+        if self.saving.may_lose_changes():
             self.documents.open_session(path)
 
     # What changed
 
     def _on_session(self, _changed: object = None) -> None:
         editor, actions = self.editor, self.actions_by_key
-        self.setWindowTitle(f"{self.documents.name}[*] – pinwarp")
+        self.setWindowTitle(f"{session_name(self.editor.path)}[*] – pinwarp")
         self.setWindowModified(editor.is_dirty)
         for key, verb, label in (
             ("undo", "&Undo", editor.undo_label),
@@ -327,7 +391,7 @@ class MainWindow(QMainWindow):
         self.actions_by_key["lock"].setChecked(view.locked)
         self.actions_by_key["guide"].setChecked(view.guided is not None)
         self.opacity.setEnabled(view.overlay)
-        self.opacity.setValue(round(view.opacity * 100))
+        self.opacity.setValue(round(getattr(view, self.maps.opacity_key) * 100))
         self.guidance.show()
 
     # Slow jobs
@@ -349,8 +413,8 @@ class MainWindow(QMainWindow):
     @property
     def is_settled(self) -> bool:
         """Whether everything asked for is done and shown."""
-        settled = (self.presenter.is_settled, self.quality.is_settled, self.grid.is_settled)
-        return self.jobs.is_idle and all(settled)
+        parts = (self.presenter, self.quality, self.tuning, self.grid, self.maps)
+        return self.jobs.is_idle and all(part.is_settled for part in parts)
 
     # The end
 
@@ -359,20 +423,25 @@ class MainWindow(QMainWindow):
             stored = self._settings.value(key)
             if isinstance(stored, QByteArray):
                 restore(stored)
+        # Snapshots that stood there are not remembered.
+        self._fit_penalty_dock()
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Ask about unsaved work, then let go of workers and graphics in the right order."""
-        if not self.documents.may_lose_changes():
+        if not self.saving.may_lose_changes():
             event.ignore()
             return
         self._settings.setValue("geometry", self.saveGeometry())
         self._settings.setValue("layout", self.saveState())
+        self.recovery.shut_down()
         self.jobs.shut_down()
         self.grid.shut_down()
         self.warp_presenter.shut_down()
         self.findings_presenter.shut_down()
         self.quality.quality_changed.disconnect(self.presenter.show_quality)
+        self.tuning.shut_down()
         self.quality.shut_down()
+        self.maps.shut_down()
         self.presenter.shut_down()
         self.table_presenter.shut_down()
         self._bone_edits.shut_down()

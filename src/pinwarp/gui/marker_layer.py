@@ -17,10 +17,21 @@ from qtpy.QtWidgets import QWidget
 from pinwarp.core.landmarks import Position
 from pinwarp.gui import theme
 from pinwarp.gui.arrow_painting import paint_arrow
-from pinwarp.gui.marker_painting import FAINT, HALO, RADIUS, draw_label, extent, marker_pixmap
+from pinwarp.gui.marker_painting import (
+    FAINT,
+    HALO,
+    RADIUS,
+    STAR_RADIUS,
+    draw_label,
+    draw_label_below,
+    draw_star,
+    extent,
+    marker_pixmap,
+)
 from pinwarp.gui.scale_bar import paint_scale_bar
 from pinwarp.gui.scene import Arrow, Marker
 from pinwarp.session.ghost import Ghost
+from pinwarp.session.maps import Suggestion
 
 if TYPE_CHECKING:
     from pinwarp.gui.canvas import Canvas
@@ -36,11 +47,13 @@ class MarkerLayer(QWidget):
         self.caption = ""
         self.hint = ""
         self.ghost: Ghost | None = None
+        self._suggestion: Suggestion | None = None
         self.arrows: tuple[Arrow, ...] = ()
         self.unit = ""
         self.radius = RADIUS
         self.painted_for: object = None
         self._markers: tuple[Marker, ...] = ()
+        self._badge = ""
         # Which places the bone hides, as long as the camera stands still.
         self._hidden: dict[Position, bool] = {}
         self._hidden_for: object = None
@@ -56,6 +69,28 @@ class MarkerLayer(QWidget):
         """Show other landmarks."""
         self._markers = markers
         self.update()
+
+    @property
+    def badge(self) -> str:
+        """What is said on a plate in the corner."""
+        return self._badge
+
+    def show_badge(self, words: str) -> None:
+        """Say that something unusual is shown; empty words take the plate away."""
+        if words != self._badge:
+            self._badge = words
+            self.update()
+
+    @property
+    def suggestion(self) -> Suggestion | None:
+        """The place that is marked for the next landmark."""
+        return self._suggestion
+
+    def show_suggestion(self, suggestion: Suggestion | None) -> None:
+        """Mark where the next landmark helps most, or nothing."""
+        if suggestion != self._suggestion:
+            self._suggestion = suggestion
+            self.update()
 
     def places(self) -> NDArray:
         """Return where the landmarks are on the screen: (n, 2) logical pixels."""
@@ -95,11 +130,15 @@ class MarkerLayer(QWidget):
             paint_scale_bar(painter, QRectF(self.rect()), length, self.unit)
         if self.hint:
             self._paint_hint(painter)
+        if self._suggestion is not None:
+            self._paint_suggestion(painter, self._suggestion)
         if self.ghost is not None:
             self._paint_ghost(painter, self.ghost)
         places, hidden = self.places(), self.hidden()
         reached_from_right = self._paint_arrows(painter, hidden)
         self._paint_markers(painter, places, hidden, reached_from_right)
+        if self._badge:
+            self._paint_badge(painter)
         painter.end()
 
     def _paint_title(self, painter: QPainter) -> None:
@@ -126,6 +165,19 @@ class MarkerLayer(QWidget):
         painter.setPen(QColor(theme.INK))
         painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, self.hint)
 
+    def _paint_badge(self, painter: QPainter) -> None:
+        metrics, margin = painter.fontMetrics(), 10
+        words = metrics.elidedText(
+            self._badge, Qt.TextElideMode.ElideRight, self.width() - 2 * margin - 20
+        )
+        plate = QRectF(0, margin, metrics.horizontalAdvance(words) + 20, metrics.height() + 8)
+        plate.moveRight(self.width() - margin)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(theme.INK))
+        painter.drawRoundedRect(plate, 6, 6)
+        painter.setPen(QColor(theme.PAPER))
+        painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, words)
+
     def _paint_ghost(self, painter: QPainter, ghost: Ghost) -> None:
         """Paint a dashed ring where a landmark is expected, in a disc as wide as the doubt."""
         position = np.array(ghost.position)
@@ -145,7 +197,24 @@ class MarkerLayer(QWidget):
             painter.setPen(pen)
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawEllipse(at, 8, 8)
-        draw_label(painter, f"{ghost.name}?", at, self.width())
+        draw_label(painter, f"{ghost.name}?", at, self._room(at))
+
+    def _paint_suggestion(self, painter: QPainter, suggestion: Suggestion) -> None:
+        """Paint a star in a dotted ring where the next landmark helps most."""
+        position = np.array([suggestion.position])
+        ((x, y),) = self._canvas.project(position)
+        at, hidden = QPointF(x, y), bool(self._canvas.behind_surface(position)[0])
+        painter.setOpacity(0.5 if hidden else 1.0)
+        draw_star(painter, at)
+        words = f"next landmark helps most here (± {suggestion.deviation:.2g} {self.unit})"
+        draw_label_below(painter, words, at, self._room(at), STAR_RADIUS)
+        painter.setOpacity(1.0)
+
+    def _room(self, at: QPointF) -> float:
+        """Return how far right a label beside a place may reach."""
+        legend = self._canvas.map_legend
+        beside = legend.isVisible() and legend.y() - 14 < at.y() < legend.geometry().bottom() + 14
+        return legend.x() if beside else self.width()
 
     def _paint_arrows(self, painter: QPainter, hidden: NDArray[np.bool_]) -> set[str]:
         """Paint the arrows; return which landmarks are reached from the right."""
@@ -198,6 +267,6 @@ class MarkerLayer(QWidget):
                 at = QPointF(*places[i])
                 name = self._markers[i].name
                 draw_label(
-                    painter, name, at, self.width(), self.radius, leftwards=name in leftwards
+                    painter, name, at, self._room(at), self.radius, leftwards=name in leftwards
                 )
         painter.setOpacity(1.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 
 from qtpy.QtCore import QPointF, QRectF, Qt
 from qtpy.QtGui import QBrush, QColor, QIcon, QPainter, QPen, QPixmap, QPolygonF
@@ -11,6 +12,7 @@ from pinwarp.core.landmarks import LandmarkState
 from pinwarp.gui import theme
 
 RADIUS = 6.0
+STAR_RADIUS = 11.0
 # By how much the ring around a selected one is wider.
 HALO = 5.0
 # How much is seen of what lies behind the surface.
@@ -81,6 +83,28 @@ def state_icon(state: LandmarkState) -> QIcon:
     return icon
 
 
+def draw_star(painter: QPainter, at: QPointF) -> None:
+    """Draw a star in a dotted ring: a place that asks for a landmark."""
+    angles = [math.pi * (i / 5 - 0.5) for i in range(10)]
+    lengths = (7.0, 3.0) * 5
+    star = QPolygonF(
+        [
+            at + QPointF(length * math.cos(angle), length * math.sin(angle))
+            for angle, length in zip(angles, lengths, strict=True)
+        ]
+    )
+    for pen in (
+        QPen(QColor(theme.PAPER), 4),
+        QPen(QColor(theme.GHOST_COLOUR), 2, Qt.PenStyle.DotLine),
+    ):
+        painter.setPen(pen)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawEllipse(at, STAR_RADIUS, STAR_RADIUS)
+    painter.setPen(QPen(QColor(theme.PAPER), 1.2))
+    painter.setBrush(QColor(theme.GHOST_COLOUR))
+    painter.drawPolygon(star)
+
+
 def draw_label(
     painter: QPainter,
     text: str,
@@ -103,7 +127,21 @@ def draw_label(
         metrics.height() + 4,
     )
     if leftwards or plate.right() > room - 2:
-        plate.moveRight(at.x() - radius - 7)
+        # Never beyond the left edge, where a long label would lose its beginning.
+        plate.moveRight(max(min(at.x() - radius - 7, room - 2), plate.width() + 2))
+    _draw_plate(painter, plate, text)
+    return plate
+
+
+def draw_label_below(painter: QPainter, text: str, at: QPointF, room: float, radius: float) -> None:
+    """Write a long label below a place, within the picture's width."""
+    metrics = painter.fontMetrics()
+    width = metrics.horizontalAdvance(text) + 12
+    left = max(min(at.x() - width / 2, room - width - 2), 2.0)
+    _draw_plate(painter, QRectF(left, at.y() + radius + 5, width, metrics.height() + 4), text)
+
+
+def _draw_plate(painter: QPainter, plate: QRectF, text: str) -> None:
     paper = QColor(theme.PAPER)
     paper.setAlphaF(0.88)
     painter.setPen(QPen(QColor(0, 0, 0, 40), 1))
@@ -111,4 +149,3 @@ def draw_label(
     painter.drawRoundedRect(plate, 4, 4)
     painter.setPen(QColor(theme.INK))
     painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, text)
-    return plate

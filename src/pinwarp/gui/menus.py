@@ -11,7 +11,7 @@ SEPARATOR = "-"
 # A key that begins with @ is a menu inside the menu.
 MENUS = {
     "&File": (
-        "open_source open_destination - open_session @recent open_sample - save save_as - "
+        "open_source open_destination - open_session @recent restore open_sample - save save_as - "
         "@import @export export_mesh export_report - quit"
     ),
     "&Edit": (
@@ -20,13 +20,16 @@ MENUS = {
         "delete_side delete_landmark - swap_destinations swap_sides @mirror - select_none filter"
     ),
     "&Place": (
-        "accept_ghost next_incomplete next_finding - "
+        "accept_ghost place_suggested next_incomplete next_finding - "
         "load_template guide set_pattern - snap set_nudge lock"
     ),
-    "&Warp": "@components play_blend - copy_figures",
+    "&Warp": (
+        "take_suggested swap_penalty - snapshot sweep clear_snapshots - "
+        "@components play_blend - copy_figures"
+    ),
     "&View": (
-        "overlay arrows @grid - fit focus @sides @cameras - section wireframe - "
-        "markers_larger markers_smaller - show_coordinates -"
+        "overlay arrows @maps @grid - fit focus @sides @cameras - section wireframe - "
+        "markers_larger markers_smaller - show_coordinates show_curve -"
     ),
     "&Help": "shortcuts - about_penalty about_quality about",
 }
@@ -47,6 +50,11 @@ SUBMENUS = {
         "view_front view_back - view_left view_right - view_top view_bottom",
     ),
     "@cameras": ("Ca&meras", "link_linked link_rotation link_free - link_next"),
+    "@maps": (
+        "Ma&ps",
+        "map_none - map_distance map_volume map_largest_stretch map_smallest_stretch "
+        "map_uncertainty - map_next",
+    ),
     "@export": (
         "E&xport Landmarks",
         "export_source export_destination export_pairs export_passengers",

@@ -58,6 +58,7 @@ class Scene:
     markers: tuple[Marker, ...]
     overlay_visible: bool = False
     overlay_opacity: float = 0.5
+    map_opacity: float = 1.0
     hint: str = ""
     ghost: Ghost | None = None
     arrows: tuple[Arrow, ...] = ()
@@ -65,6 +66,11 @@ class Scene:
     marker_radius: float = 6.0
     wireframe: bool = False
     section: float | None = None
+
+    @property
+    def overlay(self) -> tuple[bool, float, float]:
+        """How the overlay is drawn, with and without a map."""
+        return self.overlay_visible, self.overlay_opacity, self.map_opacity
 
 
 # With more of them selected, their labels would hide the bone.
@@ -120,6 +126,7 @@ def scene_of(
         markers=tuple(markers),
         overlay_visible=side is Side.DESTINATION and view.overlay,
         overlay_opacity=view.opacity,
+        map_opacity=view.map_opacity,
         ghost=ghost,
         arrows=_arrows(session, selection, view, result, quality)
         if side is Side.DESTINATION and view.arrows

@@ -37,6 +37,29 @@ BAR_COLOUR = "#0072B2"
 ARROW_COLOUR = "#20242b"
 LEFT_OUT_COLOUR = "#D55E00"
 
+FOLD_COLOUR = "#D55E00"
+
+# Maps of lengths: even steps of lightness from dark to light, told apart without red and green.
+SEQUENTIAL_COLOURS = (
+    "#4b2a7f",
+    "#45519c",
+    "#3777a3",
+    "#2a98a0",
+    "#3cb887",
+    "#94d858",
+    "#fde725",
+)
+# Maps of ratios: blue shrinks, orange grows, in between nothing changes.
+DIVERGING_COLOURS = (
+    "#08306b",
+    "#1f66ad",
+    "#6aaedb",
+    "#f4f1ea",
+    "#f2b55a",
+    "#c9720d",
+    "#6d3404",
+)
+
 SPACE = 8
 
 
@@ -51,11 +74,21 @@ def text_colour() -> QColor:
     return QGuiApplication.palette().color(QPalette.ColorRole.WindowText)
 
 
-def quiet_text_colour() -> QColor:
-    """Return the colour of text on the window that may be overlooked."""
-    return text_colour() if is_dark() else QColor(QUIET_INK)
-
-
 def selected_text_colour() -> QColor:
     """Return the colour of text on selected rows."""
     return QGuiApplication.palette().color(QPalette.ColorRole.HighlightedText)
+
+
+def quiet_text_colour() -> QColor:
+    """Return the colour of text on the window that need not be read."""
+    return QColor("#a4abb5") if is_dark() else QColor(QUIET_INK)
+
+
+def leave_one_out_colour() -> QColor:
+    """Return the colour of leave-one-out errors in plots."""
+    return QColor("#56B4E9") if is_dark() else QColor("#0072B2")
+
+
+def residual_colour() -> QColor:
+    """Return the colour of residuals in plots."""
+    return quiet_text_colour()
