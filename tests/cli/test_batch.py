@@ -124,10 +124,10 @@ def test_a_subject_that_fails_is_told_and_the_others_are_done(run, study, out):
     (study / "s1.stl").write_text("nonsense")
     outcome = run(exit_code=1)
     assert "1 done, 0 unchanged, 2 failed of 3" in outcome.stdout
-    assert "pinwarp: s0: study.csv, line 2: There is no file" in outcome.stderr
+    assert "pinwarp: s0: study.csv, line 2: The file" in outcome.stderr
     rows = rows_of(out)
     assert [row["status"] for row in rows.values()] == ["failed", "failed", "done"]
-    assert "line 2: There is no file" in rows["s0"]["error"]
+    assert "line 2: The file" in rows["s0"]["error"]
     assert rows["s1"]["error"].startswith("s1.stl: ")
     assert not (out / "s1_warped.ply").exists()
 

@@ -44,7 +44,7 @@ def test_the_command_runs_on_a_cluster(pinwarp_command, study, tmp_path, cluster
     on = ("--scheduler", cluster.scheduler_address)
     outcome = pinwarp_command(*arguments, "-o", there, *on, exit_code=1)
     assert "2 done, 0 unchanged, 1 failed of 3" in outcome.stdout
-    assert "s1: study.csv, line 3: There is no file" in outcome.stderr
+    assert "s1: study.csv, line 3: The file" in outcome.stderr
     pinwarp_command(*arguments, "-o", here, "--jobs", 1, exit_code=1)
     for name in ("s0_warped.ply", "s2_warped.ply", "s2_passengers.landmarks.csv"):
         assert (there / name).read_bytes() == (here / name).read_bytes()

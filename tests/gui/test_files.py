@@ -209,9 +209,9 @@ def test_saving_adds_the_suffix_and_remembers_the_file(user, tmp_path):
     user.trigger("save_as")
     path = tmp_path / "left femur.pinwarp.csv"
     assert path.is_file()
-    user.window._recent_menu.aboutToShow.emit()
-    assert user.window._recent_menu.actions()[0].text() == path.name
-    user.window._recent_menu.actions()[0].trigger()
+    user.window.recent_menu.aboutToShow.emit()
+    assert user.window.recent_menu.actions()[0].text() == path.name
+    user.window.recent_menu.actions()[0].trigger()
     user.settle()
     assert user.editor.path == path
 

@@ -1,47 +1,27 @@
-"""The window: lays out the views, and wires actions to what they do."""
+"""The window: puts the presenters over its frame, and wires actions to what they do."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from qtpy.QtCore import QByteArray, QSettings, QSize, Qt
+from qtpy.QtCore import QSettings
 from qtpy.QtGui import QCloseEvent
-from qtpy.QtWidgets import (
-    QDockWidget,
-    QHBoxLayout,
-    QLabel,
-    QMainWindow,
-    QSizePolicy,
-    QSlider,
-    QSplitter,
-    QTabWidget,
-    QToolBar,
-    QVBoxLayout,
-    QWidget,
-)
+from qtpy.QtWidgets import QToolBar
 
 from pinwarp.core.landmarks import Side
-from pinwarp.gui.actions import icon, make_actions
 from pinwarp.gui.bone_edits import BoneEdits
 from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Documents
 from pinwarp.gui.exports import Exports
 from pinwarp.gui.file_tasks import FileTasks
 from pinwarp.gui.file_warping import FileWarping
-from pinwarp.gui.findings_panel import FindingsPanel
 from pinwarp.gui.findings_presenter import FindingsPresenter
 from pinwarp.gui.grid_presenter import GridPresenter
 from pinwarp.gui.guidance import Guidance
-from pinwarp.gui.guide_bar import GuideBar
 from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY, ABOUT_QUALITY
 from pinwarp.gui.job_progress import JobProgress
 from pinwarp.gui.jobs import SlowJob
-from pinwarp.gui.landmark_panel import LandmarkPanel
-from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
-from pinwarp.gui.map_panel import MapPanel
 from pinwarp.gui.map_presenter import MapPresenter
-from pinwarp.gui.menus import fill_toolbar, make_menus, shortcut_groups
-from pinwarp.gui.penalty_panel import PenaltyPanel
 from pinwarp.gui.penalty_tuning import PenaltyTuning
 from pinwarp.gui.picture_export import PictureExport
 from pinwarp.gui.presenter import Presenter
@@ -51,20 +31,17 @@ from pinwarp.gui.recovery import Recovery
 from pinwarp.gui.report_export import ReportExport
 from pinwarp.gui.saving import Saving
 from pinwarp.gui.session_meshes import SessionMeshes
-from pinwarp.gui.shortcut_overlay import ShortcutOverlay
-from pinwarp.gui.snapshot_strip import SnapshotStrip
 from pinwarp.gui.stepped_job import SteppedJob
 from pinwarp.gui.table_presenter import TablePresenter
 from pinwarp.gui.view_controls import ViewControls
-from pinwarp.gui.viewport import Viewport
-from pinwarp.gui.warp_panel import WarpPanel
 from pinwarp.gui.warp_presenter import WarpPresenter
+from pinwarp.gui.window_frame import WindowFrame
 from pinwarp.io.file_names import session_name
 from pinwarp.io.samples import sample_session
 from pinwarp.session.editor import Editor
 
 
-class MainWindow(QMainWindow):
+class MainWindow(WindowFrame):
     """One window over one editor.
 
     Parameters
@@ -86,23 +63,12 @@ class MainWindow(QMainWindow):
         super().__init__()
         self._settings = settings
         self.editor = Editor()
-        self.viewports = {side: Viewport(side) for side in Side}
-        self.model = LandmarkModel(self)
-        self.table = LandmarkTable(self.model)
         self.jobs = SlowJob(self)
         self.stepped = SteppedJob(self)
-        self.actions_by_key = make_actions(self)
-        self.panel = PenaltyPanel(self.actions_by_key)
-        self.snapshot_strip = SnapshotStrip(
-            [self.actions_by_key[key] for key in ("snapshot", "sweep", "clear_snapshots")]
-        )
-        self.warp_panel = WarpPanel(self.actions_by_key)
-        self.map_panel = MapPanel(self.actions_by_key["place_suggested"])
-        self.findings = FindingsPanel()
-        self.landmarks = LandmarkPanel(self.table, self.findings, self.actions_by_key)
         self._dialogs = dialogs or Dialogs(self)
         self._recent = RecentFiles(settings)
-        self._lay_out()
+        progress = JobProgress(self.statusBar(), (self.jobs, self.stepped))
+        self.progress, self.cancel = progress.bar, progress.cancel
         self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
         self.quality = QualityPresenter(self.presenter)
         self.maps = MapPresenter(
@@ -117,7 +83,7 @@ class MainWindow(QMainWindow):
             self.landmarks,
             self.actions_by_key,
             self.presenter.requests,
-            self._say,
+            self.say,
         )
         self.tuning = PenaltyTuning(
             self.editor,
@@ -127,14 +93,14 @@ class MainWindow(QMainWindow):
             self.panel,
             self.snapshot_strip,
             self.actions_by_key,
-            self._say,
+            self.say,
             self,
         )
         self._bone_edits = BoneEdits(self.editor, self.actions_by_key, self)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
         self.view_controls.add_to(self.findChild(QToolBar, "tools"))
         self.warp_presenter = WarpPresenter(
-            self.editor, self.warp_panel, self.quality, self.actions_by_key, self._say, self
+            self.editor, self.warp_panel, self.quality, self.actions_by_key, self.say, self
         )
         self.grid = GridPresenter(
             self.editor, self.presenter, self.viewports, self.actions_by_key, self
@@ -167,105 +133,11 @@ class MainWindow(QMainWindow):
             self.landmarks,
             self.actions_by_key,
             self._dialogs,
-            self._say,
+            self.say,
         )
         self._connect()
-        self._restore_layout()
+        self.restore_layout(settings)
         self._on_session()
-
-    # Layout
-
-    def _lay_out(self) -> None:
-        self.setWindowIcon(icon("pinwarp"))
-        self.resize(1280, 800)
-        splitter = QSplitter(Qt.Orientation.Horizontal)
-        splitter.setChildrenCollapsible(False)
-        for side in Side:
-            splitter.addWidget(self.viewports[side])
-            splitter.setStretchFactor(splitter.count() - 1, 1)
-        splitter.setSizes([1000, 1000])
-        self.guide_bar = GuideBar()
-        centre = QWidget()
-        column = QVBoxLayout(centre)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.guide_bar)
-        column.addWidget(splitter, 1)
-        self.setCentralWidget(centre)
-        right = Qt.DockWidgetArea.RightDockWidgetArea
-        landmarks = self._add_dock("landmarks", "Landmarks", self.landmarks, right)
-        warp = self._add_dock("warp", "Warp", self.warp_panel, right)
-        self.tabifyDockWidget(landmarks, warp)
-        self.tabifyDockWidget(warp, self._add_dock("map", "Map", self.map_panel, right))
-        self.setTabPosition(right, QTabWidget.TabPosition.North)
-        landmarks.raise_()
-        penalty = QWidget()
-        rows = QVBoxLayout(penalty)
-        rows.setContentsMargins(0, 0, 0, 0)
-        rows.setSpacing(0)
-        rows.addWidget(self.snapshot_strip)
-        rows.addWidget(self.panel, 1)
-        self._penalty_dock = self._add_dock(
-            "penalty", "Warping penalty", penalty, Qt.DockWidgetArea.BottomDockWidgetArea
-        )
-        # The table keeps the whole height of the right edge.
-        self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
-        self.resizeDocks([landmarks], [430], Qt.Orientation.Horizontal)
-        self._fit_penalty_dock()
-        self._make_menus()
-        self._make_toolbar()
-        self._make_status_bar()
-
-    def _fit_penalty_dock(self) -> None:
-        """Give the penalty no more height than it needs: the rest is the bones'."""
-        dock = self._penalty_dock
-        # What has just appeared or gone counts now, not only at the next turn of the event loop.
-        for widget in (self.panel, dock.widget(), dock):
-            widget.layout().activate()
-        self.resizeDocks([dock], [1], Qt.Orientation.Vertical)
-
-    def _add_dock(
-        self, key: str, title: str, widget: QWidget, area: Qt.DockWidgetArea
-    ) -> QDockWidget:
-        dock = QDockWidget(title, self)
-        dock.setObjectName(key)
-        dock.setWidget(widget)
-        self.addDockWidget(area, dock)
-        return dock
-
-    def _make_menus(self) -> None:
-        # Kept: Python must not let go of a menu that Qt still shows.
-        self._menus = make_menus(self.menuBar(), self.actions_by_key)
-        self._recent_menu = self._menus["@recent"]
-        self._recent_menu.aboutToShow.connect(self._fill_recent)
-        for dock in self.findChildren(QDockWidget):
-            self._menus["&View"].addAction(dock.toggleViewAction())
-        self.shortcuts = ShortcutOverlay(self, shortcut_groups(self.actions_by_key))
-
-    def _make_toolbar(self) -> None:
-        bar = QToolBar("Tools", self)
-        bar.setObjectName("tools")
-        bar.setMovable(False)
-        bar.setIconSize(QSize(20, 20))
-        fill_toolbar(bar, self.actions_by_key)
-        self.opacity = QSlider(Qt.Orientation.Horizontal)
-        self.opacity.setRange(5, 100)
-        self.opacity.setFixedWidth(110)
-        self.opacity.setAccessibleName("Opacity of the warped source")
-        self.opacity.setToolTip("Opacity of the warped source")
-        holder = QWidget()
-        row = QHBoxLayout(holder)
-        row.setContentsMargins(4, 0, 8, 0)
-        row.addWidget(self.opacity)
-        holder.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Preferred)
-        bar.addWidget(holder)
-        self.addToolBar(bar)
-
-    def _make_status_bar(self) -> None:
-        self.hint = QLabel()
-        self.statusBar().addWidget(self.hint, 1)
-        progress = JobProgress(self.statusBar(), (self.jobs, self.stepped))
-        self.progress, self.cancel = progress.bar, progress.cancel
 
     # Wiring
 
@@ -313,14 +185,15 @@ class MainWindow(QMainWindow):
         for key, function in does.items():
             # Qt's "checked" argument is of no use to any of them.
             actions[key].triggered.connect(lambda _checked=False, call=function: call())
+        self.recent_menu.aboutToShow.connect(self._fill_recent)
         actions["overlay"].toggled.connect(lambda on: editor.look(overlay=on))
         actions["lock"].toggled.connect(lambda on: editor.look(locked=on))
         actions["guide"].toggled.connect(self.guidance.switch)
-        self.snapshot_strip.height_changed.connect(self._fit_penalty_dock)
-        actions["show_curve"].toggled.connect(self._fit_penalty_dock)
-        self.presenter.requests.refused.connect(self._say)
-        self.guidance.said.connect(self._say)
-        self.maps.refused.connect(self._say)
+        self.snapshot_strip.height_changed.connect(self.fit_penalty_dock)
+        actions["show_curve"].toggled.connect(self.fit_penalty_dock)
+        self.presenter.requests.refused.connect(self.say)
+        self.guidance.said.connect(self.say)
+        self.maps.refused.connect(self.say)
         self.maps.map_changed.connect(self._on_view)
         self.opacity.valueChanged.connect(
             lambda value: editor.look(**{self.maps.opacity_key: value / 100})
@@ -329,7 +202,7 @@ class MainWindow(QMainWindow):
             viewport.files_dropped.connect(
                 lambda paths, side=side: documents.open_files(side, paths)
             )
-        self._tasks.said.connect(self._say)
+        self._tasks.said.connect(self.say)
         editor.session_changed.connect(self._on_session)
         editor.selection_changed.connect(self._on_session)
         editor.view_changed.connect(self._on_view)
@@ -341,20 +214,17 @@ class MainWindow(QMainWindow):
         if self.saving.may_lose_changes():
             self.documents.open_session(sample_session(), as_new=True)
 
-    def _say(self, text: str) -> None:
-        self.statusBar().showMessage(text, 6000)
-
     def _fill_recent(self) -> None:
-        self._recent_menu.clear()
+        self.recent_menu.clear()
         for path in self._recent.paths:
-            action = self._recent_menu.addAction(path.name.replace("&", "&&"))
+            action = self.recent_menu.addAction(path.name.replace("&", "&&"))
             action.setToolTip(str(path))
             action.triggered.connect(lambda _checked=False, path=path: self._open_recent(path))
-        if self._recent_menu.isEmpty():
-            self._recent_menu.addAction("Nothing yet").setEnabled(False)
+        if self.recent_menu.isEmpty():
+            self.recent_menu.addAction("Nothing yet").setEnabled(False)
         else:
-            self._recent_menu.addSeparator()
-            self._recent_menu.addAction("Clear").triggered.connect(self._recent.clear)
+            self.recent_menu.addSeparator()
+            self.recent_menu.addAction("Clear").triggered.connect(self._recent.clear)
 
     def _open_recent(self, path: Path) -> None:
         if self.saving.may_lose_changes():
@@ -406,21 +276,12 @@ class MainWindow(QMainWindow):
 
     # The end
 
-    def _restore_layout(self) -> None:
-        for key, restore in (("geometry", self.restoreGeometry), ("layout", self.restoreState)):
-            stored = self._settings.value(key)
-            if isinstance(stored, QByteArray):
-                restore(stored)
-        # Snapshots that stood there are not remembered.
-        self._fit_penalty_dock()
-
     def closeEvent(self, event: QCloseEvent) -> None:
         """Ask about unsaved work, then let go of workers and graphics in the right order."""
         if not self.saving.may_lose_changes():
             event.ignore()
             return
-        self._settings.setValue("geometry", self.saveGeometry())
-        self._settings.setValue("layout", self.saveState())
+        self.save_layout(self._settings)
         self.recovery.shut_down()
         self.jobs.shut_down()
         self.stepped.shut_down()

@@ -15,6 +15,7 @@ from pinwarp.core.landmarks import Landmark, Role, Side
 from pinwarp.io.landmark_files import LandmarkReading, read_landmarks, write_landmarks
 from pinwarp.io.manifest import Subject
 from pinwarp.io.meshes import MeshFile, read_mesh, write_mesh
+from pinwarp.io.reading import hash_of
 from pinwarp.io.session_file import MeshReference
 from pinwarp.session.check import Check, check
 from pinwarp.session.exports import warped_mesh, warped_passengers
@@ -239,15 +240,11 @@ def made_from(task: Task) -> str:
 def _content(task: Task, path: Path | None) -> str:
     if path is None:
         return ""
-    try:
-        with path.open("rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest()
-    except FileNotFoundError:
-        raise FileFormatError(
-            task.manifest,
-            f"There is no file {path}. Was it moved or renamed?",
-            task.subject.line,
-        ) from None
+    found = hash_of(path)
+    if found is None:
+        words = "cannot be read." if path.exists() else "is not there. Was it moved or renamed?"
+        raise FileFormatError(task.manifest, f"The file {path} {words}", task.subject.line)
+    return found
 
 
 def places_of(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
