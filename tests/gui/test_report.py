@@ -23,6 +23,8 @@ def test_a_report_is_one_page_with_both_views_and_the_numbers_lie_beside_it(user
     left_out = {row["item"]: float(row["value"]) for row in rows if row["quantity"] == "left out"}
     assert set(left_out) == {pair.name for pair in user.session.pairs}
     assert user.window.quality.quality.left_out.distances.tolist() == [*left_out.values()]
+    far = {row["item"]: row["value"] for row in rows if row["quantity"] == "maximum"}
+    assert set(far) == {"source to destination", "destination to source"}
     assert "femur.csv" in user.window.statusBar().currentMessage()
 
 
@@ -33,7 +35,7 @@ def test_a_report_that_cannot_be_written_is_told_and_leaves_nothing(user, tmp_pa
     ((title, text),) = user.dialogs.errors
     assert "femur.html" in title
     assert "No such file" in text
-    assert list(tmp_path.iterdir()) == []
+    assert not [*tmp_path.rglob("*.html"), *tmp_path.rglob("*.csv")]
 
 
 def test_without_pairs_there_is_nothing_to_report(user):

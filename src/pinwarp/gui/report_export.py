@@ -15,11 +15,11 @@ from pinwarp.gui.file_tasks import FileTasks, Progress
 from pinwarp.io.report import Picture, write_figures, write_report
 from pinwarp.session.editor import Editor
 from pinwarp.session.exports import applied_in_words
+from pinwarp.session.maps import MapKind
 from pinwarp.session.quality import quality_of
 from pinwarp.session.report import report_of
 from pinwarp.session.results import WarpInputs, WarpSolver
-
-REPORT_FILES = "Reports (*.html);;All files (*)"
+from pinwarp.session.survey import Surveyor
 
 
 class ReportExport:
@@ -51,10 +51,10 @@ class ReportExport:
 
     def ask_and_export(self) -> None:
         """Ask for a file and write the report there, with its numbers as CSV beside it."""
-        proposal = self._tasks.folder() / f"{self._name().lower()}_report.html"
-        path = self._tasks.dialogs.ask_save("Export a report", REPORT_FILES, proposal)
+        name = f"{self._name().lower()}_report.html"
+        path = self._tasks.ask_save("Export a report", name, (".html",), "Reports")
         if path is not None:
-            self.export(path if path.suffix else path.with_suffix(".html"))
+            self.export(path)
 
     def export(self, path: Path) -> None:
         """Write the report and its CSV."""
@@ -68,7 +68,10 @@ class ReportExport:
             quality = quality_of(result)
             if quality is None:
                 raise PinwarpError(result.problem or "There is no pair yet to report on.")
-            report = report_of(title, session, result, quality, now)
+            progress(0.3, "measuring distances")
+            destination = session.mesh(Side.DESTINATION)
+            survey = Surveyor().survey(result, destination, MapKind.DISTANCE)
+            report = report_of(title, session, result, quality, survey, now)
             progress(0.8, "writing")
             write_report(path, report, pictures)
             write_figures(table, report.figures)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Sequence
 from datetime import datetime
 
 import numpy as np
@@ -18,6 +17,7 @@ from pinwarp.session.exports import applied_in_words
 from pinwarp.session.quality import Quality
 from pinwarp.session.results import WarpResult
 from pinwarp.session.session import Session
+from pinwarp.session.survey import Survey
 
 LEFT_OUT_COLOUR, RESIDUAL_COLOUR, SUGGESTED_COLOUR = "#0072B2", "#8b919a", "#009E73"
 _AXES = "xyz"
@@ -28,9 +28,8 @@ def report_of(
     session: Session,
     result: WarpResult,
     quality: Quality,
+    survey: Survey,
     made: datetime,
-    others: Sequence[Figure] = (),
-    more_findings: Sequence[str] = (),
 ) -> Report:
     """Collect what is known about a session's warp.
 
@@ -40,12 +39,10 @@ def report_of(
         What the session is called.
     session
         The session; the others were computed for it.
-    result, quality
-        Its warp, and what its pairs say about one another.
+    result, quality, survey
+        Its warp, what its pairs say about one another, and what was found all over the source.
     made
         When the report is made.
-    others, more_findings
-        Further figures and sentences, such as those of the surfaces.
 
     Returns
     -------
@@ -53,14 +50,18 @@ def report_of(
     """
     names = [pair.name for pair in session.pairs]
     unit = session.unit
-    findings = [finding.describe(names, unit) for finding in quality.findings]
+    found = (*survey.findings, *quality.findings)
     return Report(
         title=title,
         made=f"Made by pinwarp {pinwarp.__version__} on {made:%d %B %Y at %H:%M} "
         f"(Python {platform.python_version()}, numpy {np.__version__})",
         facts=_facts(session, result),
-        findings=(*more_findings, *findings),
-        figures=(*_of_pairs(session, result, quality), *others, *_of_warp(quality, unit)),
+        findings=tuple(finding.describe(names, unit) for finding in found),
+        figures=(
+            *_of_pairs(session, result, quality),
+            *_of_surfaces(survey, unit),
+            *_of_warp(quality, unit),
+        ),
         remarks=(
             (
                 "Pairs",
@@ -68,6 +69,11 @@ def report_of(
                 "Left out: the same when the pair is left out of the solve. Standardised: that "
                 "error in units of what is usual for its surroundings; from 2.5 on it is "
                 "suspicious.",
+            ),
+            (
+                "Distances",
+                "Between the surfaces as applied: from every vertex of one to the nearest place on "
+                "the other, not weighted by area.",
             ),
             (
                 "Affine part",
@@ -125,6 +131,26 @@ def _of_pairs(session: Session, result: WarpResult, quality: Quality) -> list[Fi
         for side in Side:
             for axis, number in zip(_AXES, pair.position(side) or (), strict=False):
                 figures.append(Figure("Pairs", pair.name, f"{side.value} {axis}", number, unit))
+    return figures
+
+
+def _of_surfaces(survey: Survey, unit: str) -> list[Figure]:
+    figures = []
+    compared = None if survey.map is None else survey.map.comparison
+    if compared is not None:
+        for item, found in (
+            ("source to destination", compared.forward_figures),
+            ("destination to source", compared.backward_figures),
+        ):
+            for quantity, value in (
+                ("mean", found.mean),
+                ("RMS", found.rms),
+                ("95 % are below", found.percentile_95),
+                ("maximum", found.maximum),
+            ):
+                figures.append(Figure("Distances", item, quantity, value, unit))
+    if survey.folds is not None:
+        figures.append(Figure("Folds", "vertices", "folded", survey.folds.count))
     return figures
 
 

@@ -1,0 +1,67 @@
+"""What a report says about a session."""
+
+from __future__ import annotations
+
+from datetime import datetime
+
+import numpy as np
+
+from pinwarp.core.landmarks import Side
+from pinwarp.io.samples import sample_session
+from pinwarp.session import edits
+from pinwarp.session.files import read_session
+from pinwarp.session.maps import MapKind
+from pinwarp.session.quality import quality_of
+from pinwarp.session.report import report_of
+from pinwarp.session.results import WarpInputs, WarpSolver
+from pinwarp.session.survey import Surveyor
+
+MADE = datetime(2026, 11, 22, 14, 3)
+
+
+def reported(session):
+    result = WarpSolver().solve(WarpInputs.of(session))
+    destination = session.mesh(Side.DESTINATION)
+    survey = Surveyor().survey(result, destination, MapKind.DISTANCE)
+    return report_of("femur", session, result, quality_of(result), survey, MADE)
+
+
+def values(report, quantity):
+    return {x.item: x.value for x in report.figures if x.quantity == quantity}
+
+
+def test_a_report_names_meshes_hashes_penalty_and_date():
+    session = read_session(sample_session())
+    report = reported(edits.set_penalty(session, 2.5))
+    facts = dict(report.facts)
+    assert session.source.sha256 in facts["Source mesh"]
+    assert session.destination.sha256 in facts["Destination mesh"]
+    assert facts["Warping penalty"] == "2.5 mm"
+    assert "22 November 2026 at 14:03" in report.made
+
+
+def test_the_figures_are_those_of_the_warp():
+    session = edits.set_penalty(read_session(sample_session()), 2.5)
+    result = WarpSolver().solve(WarpInputs.of(session))
+    report = reported(session)
+    assert list(values(report, "residual").values()) == result.residuals.tolist()
+    assert values(report, "folded") == {"vertices": 0}
+    assert len(values(report, "maximum")) == 2
+
+
+def test_a_swap_is_the_first_thing_to_check():
+    session = read_session(sample_session())
+    names = [pair.name for pair in session.pairs]
+    swapped = edits.swap_destinations(session, names[2], names[9])
+    first = reported(swapped).findings[0]
+    assert names[2] in first
+    assert names[9] in first
+    assert "swapped" in first
+
+
+def test_without_meshes_there_are_no_distances_but_all_else():
+    session = read_session(sample_session(), meshes=())
+    report = reported(session)
+    assert values(report, "maximum") == {}
+    assert np.isfinite(list(values(report, "left out").values())).all()
+    assert "not found" in dict(report.facts)["Source mesh"]
