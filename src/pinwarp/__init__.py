@@ -1,15 +1,110 @@
-"""Pair landmarks on two meshes and warp one into the other with a 3D thin-plate spline."""
+"""Pair landmarks on two meshes and warp one into the other with a 3D thin-plate spline.
 
-from pinwarp.core.errors import PinwarpError, PinwarpWarning
-from pinwarp.tps3d import PenaltyConvention, TPSCoefficients3D, solve_coefficients
+Everything a script needs is here; what a name stands on is loaded when it is first used, VTK
+only with meshes that need it, Qt never.
+
+Sessions
+    :class:`Session`, :func:`read_session`, :func:`write_session`, :func:`warped_mesh`,
+    :func:`warped_passengers`, :func:`check`, :class:`Check`
+Landmarks and meshes
+    :class:`Landmark`, :class:`Side`, :class:`Role`, :func:`read_landmarks`,
+    :func:`write_landmarks`, :class:`Mesh`, :class:`MeshFile`, :func:`read_mesh`,
+    :func:`write_mesh`, :func:`compare_surfaces`
+The spline
+    :func:`solve_coefficients`, :class:`TPSCoefficients3D`, :class:`PenaltyConvention`,
+    :class:`Components`, :func:`factorise`, :func:`leave_one_out`, :func:`penalty_curve`
+What can go wrong
+    :class:`PinwarpError`, :class:`PinwarpWarning`
+
+Examples
+--------
+>>> import pinwarp
+>>> from pinwarp.io.samples import sample_session
+>>> session = pinwarp.read_session(sample_session())
+>>> warped = pinwarp.warped_mesh(session)
+>>> pinwarp.compare_surfaces(warped, session.destination.mesh).forward_figures.maximum < 4  # mm
+True
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pinwarp.core.components import Components
+    from pinwarp.core.errors import PinwarpError, PinwarpWarning
+    from pinwarp.core.factor import factorise
+    from pinwarp.core.landmarks import Landmark, Role, Side
+    from pinwarp.core.mesh import Mesh
+    from pinwarp.core.quality import leave_one_out, penalty_curve
+    from pinwarp.core.surface_distance import compare_surfaces
+    from pinwarp.io.landmark_files import read_landmarks, write_landmarks
+    from pinwarp.io.meshes import MeshFile, read_mesh, write_mesh
+    from pinwarp.session.check import Check, check
+    from pinwarp.session.exports import warped_mesh, warped_passengers
+    from pinwarp.session.files import read_session, write_session
+    from pinwarp.session.session import Session
+    from pinwarp.tps3d import PenaltyConvention, TPSCoefficients3D, solve_coefficients
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "Check",
+    "Components",
+    "Landmark",
+    "Mesh",
+    "MeshFile",
     "PenaltyConvention",
     "PinwarpError",
     "PinwarpWarning",
+    "Role",
+    "Session",
+    "Side",
     "TPSCoefficients3D",
     "__version__",
+    "check",
+    "compare_surfaces",
+    "factorise",
+    "leave_one_out",
+    "penalty_curve",
+    "read_landmarks",
+    "read_mesh",
+    "read_session",
     "solve_coefficients",
+    "warped_mesh",
+    "warped_passengers",
+    "write_landmarks",
+    "write_mesh",
+    "write_session",
 ]
+
+_HOMES = {
+    "core.components": ("Components",),
+    "core.errors": ("PinwarpError", "PinwarpWarning"),
+    "core.factor": ("factorise",),
+    "core.landmarks": ("Landmark", "Role", "Side"),
+    "core.mesh": ("Mesh",),
+    "core.quality": ("leave_one_out", "penalty_curve"),
+    "core.surface_distance": ("compare_surfaces",),
+    "io.landmark_files": ("read_landmarks", "write_landmarks"),
+    "io.meshes": ("MeshFile", "read_mesh", "write_mesh"),
+    "session.check": ("Check", "check"),
+    "session.exports": ("warped_mesh", "warped_passengers"),
+    "session.files": ("read_session", "write_session"),
+    "session.session": ("Session",),
+    "tps3d": ("PenaltyConvention", "TPSCoefficients3D", "solve_coefficients"),
+}
+_HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name at its first use."""
+    if name not in _HOME_OF:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{_HOME_OF[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """Return the public names, loaded or not."""
+    return sorted({*globals(), *__all__})

@@ -105,6 +105,12 @@ class TPSCoefficients3D:
         A length in mesh units.
     convention : PenaltyConvention
         The equation that the penalty entered.
+
+    Examples
+    --------
+    >>> warp = solve_coefficients([[0, 0, 0], [0, 0, 1]], [[5, 0, 0], [5, 0, 2]])
+    >>> warp.warp_points([[0, 0, 0.5]]).round(9).tolist()
+    [[5.0, 0.0, 1.0]]
     """
 
     a1: NDArray[np.float64]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -9,6 +10,7 @@ import sys
 import pytest
 
 import pinwarp
+from pinwarp.io.samples import sample_session
 
 
 def run(*arguments, display=True, **environment):
@@ -37,6 +39,39 @@ def test_the_command_line_starts_without_qt():
         "assert not [m for m in sys.modules if m.startswith(('qtpy', 'PySide6', 'pyvistaqt'))]"
     )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+def test_the_commands_need_neither_qt_nor_vtk_for_the_sample(tmp_path):
+    session = sample_session()
+    for words in (
+        ["warp", str(session), "-o", str(tmp_path / "bone.ply")],
+        ["check", str(session), "--json"],
+        ["convert", str(session), str(tmp_path / "all.csv")],
+    ):
+        code = (
+            f"import sys; from pinwarp.__main__ import main; sys.argv = ['pinwarp', *{words!r}]\n"
+            "try: main()\nexcept SystemExit as end: assert not end.code, end.code\n"
+            "loaded = {name.partition('.')[0] for name in sys.modules}\n"
+            "assert not loaded & {'qtpy', 'PySide6', 'vtk', 'vtkmodules', 'pyvista'}"
+        )
+        subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+    assert (tmp_path / "bone.ply").is_file()
+
+
+def test_an_error_is_one_line_and_no_traceback(tmp_path):
+    outcome = run("check", tmp_path / "gone.pinwarp.csv", display=False)
+    assert outcome.returncode == 2
+    assert outcome.stderr == (
+        f"pinwarp: gone.pinwarp.csv: There is no such file in {tmp_path}. "
+        "Was it moved or renamed?\n"
+    )
+    assert outcome.stdout == ""
+
+
+def test_a_check_needs_no_display():
+    outcome = run("check", sample_session(), "--json", display=False)
+    assert outcome.returncode == 0, outcome.stderr
+    assert len(json.loads(outcome.stdout)["pairs"]) == 16
 
 
 @pytest.mark.parametrize("module", ["pinwarp", "pinwarp.tps3d"])

@@ -100,7 +100,12 @@ def test_an_affine_map_leaves_nothing_suspicious():
     result = leave_one_out(factorise(source), 3 * source + 50)
     assert result.rms < 1e-9
     assert not result.standardised.any()
-    assert penalty_curve(factorise(source), 3 * source + 50).suggested is None
+    curve = penalty_curve(factorise(source), 3 * source + 50)
+    assert curve.is_affine
+    assert not curve.leave_one_out.any()
+    assert not curve.residual.any()
+    assert curve.suggested is None
+    assert not penalty_curve(factorise(source), 3 * source**2 + 50).is_affine
 
 
 @given(landmark_pairs(least=6), st.sampled_from([1e-3, 25.4]), st.floats(0, 2))
@@ -126,8 +131,20 @@ def test_a_curve_has_the_figures_of_each_single_solve(pairs):
         residual = solve(factor, destination, penalty).evaluate(source) - destination
         alone = leave_one_out(factor, destination, penalty)
         assert curve.residual[k] == pytest.approx(rms(residual), rel=1e-8, abs=1e-11 * size)
-        assert curve.leave_one_out[k] == pytest.approx(alone.rms, rel=1e-8, abs=1e-12 * size)
+        assert curve.leave_one_out[k] == pytest.approx(alone.rms, rel=1e-8, abs=1e-11 * size)
         assert curve.flexibility[k] == pytest.approx(factor.flexibility(penalty))
+
+
+@given(landmark_pairs(least=6), st.floats(0, 1))
+def test_between_its_penalties_a_curve_runs_close_to_the_figures(pairs, flexibility):
+    source, destination = pairs
+    factor = factorise(source)
+    curve = penalty_curve(factor, destination)
+    there = penalty_curve(factor, destination, [factor.penalty_at(flexibility)])
+    left_out, residual = curve.at(flexibility)
+    # As far as a line of a pixel's width can show it.
+    assert abs(left_out - there.leave_one_out[0]) < 0.03 * curve.leave_one_out.max() + 1e-12
+    assert abs(residual - there.residual[0]) < 0.03 * curve.residual.max() + 1e-12
 
 
 def test_noise_asks_for_a_penalty_and_smoothness_for_none():
@@ -138,9 +155,9 @@ def test_noise_asks_for_a_penalty_and_smoothness_for_none():
     factor = factorise(source)
     curve = penalty_curve(factor, noisy)
     best = int(curve.leave_one_out.argmin())
-    assert len(curve.penalties) == 61
-    assert curve.penalties[0] == 0
-    assert 0 < best < 60
+    assert len(curve.penalties) == 62
+    assert curve.penalties[[0, -1]].tolist() == [0, np.inf]
+    assert 0 < best < 61
     assert curve.suggested == curve.penalties[best]
     assert penalty_curve(factor, smooth).suggested is None
     probes = rng.uniform(-1, 1, (500, 3))

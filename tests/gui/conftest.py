@@ -15,9 +15,10 @@ from vtkmodules.vtkCommonCore import vtkObjectBase
 
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.app import make_application
-from pinwarp.gui.dialogs import Answer
+from pinwarp.gui.dialogs import Answer, Existing, LostAnswer, OpenTwice, Overwrite
 from pinwarp.gui.main_window import MainWindow
 from pinwarp.io.samples import assets_folder, sample_session
+from pinwarp.session.recovery import LostWork
 
 
 @pytest.fixture(scope="session")
@@ -35,16 +36,37 @@ class ScriptedDialogs:
 
     def __init__(self) -> None:
         self.opens: list[Path] = []
+        self.opens_many: list[list[Path]] = []
+        self.folders: list[Path] = []
+        self.existing = Existing.CANCEL
+        self.existing_questions: list[list[str]] = []
         self.saves: list[Path] = []
         self.texts: list[str] = []
         self.unsaved = Answer.DISCARD
         self.unsaved_questions = 0
         self.missing: Path | None = None
+        self.missing_questions: list[tuple[str, Path, Path | None]] = []
+        self.lost: list[LostAnswer] = []
+        self.lost_offers: list[list[LostWork]] = []
+        self.open_twice = OpenTwice.CANCEL
+        self.open_twice_questions: list[tuple[str, str]] = []
+        self.overwrite = Overwrite.CANCEL
+        self.overwrite_questions: list[tuple[str, str]] = []
         self.errors: list[tuple[str, str]] = []
         self.told: list[tuple[str, str, str]] = []
 
     def ask_open(self, _title, _filters, _folder):
         return self.opens.pop(0) if self.opens else None
+
+    def ask_open_many(self, _title, _filters, _folder):
+        return self.opens_many.pop(0) if self.opens_many else []
+
+    def ask_folder(self, _title, _folder):
+        return self.folders.pop(0) if self.folders else None
+
+    def ask_existing(self, existing):
+        self.existing_questions.append([path.name for path in existing])
+        return self.existing
 
     def ask_save(self, _title, _filters, _proposal):
         return self.saves.pop(0) if self.saves else None
@@ -56,8 +78,21 @@ class ScriptedDialogs:
     def ask_text(self, _title, _question, _proposal):
         return self.texts.pop(0) if self.texts else None
 
-    def ask_missing_mesh(self, _side, _path):
+    def ask_missing_mesh(self, side, path, other):
+        self.missing_questions.append((side, path, other))
         return self.missing
+
+    def ask_lost_work(self, found):
+        self.lost_offers.append(list(found))
+        return (self.lost.pop(0) if self.lost else LostAnswer.LATER), found[0]
+
+    def ask_open_twice(self, name, where):
+        self.open_twice_questions.append((name, where))
+        return self.open_twice
+
+    def ask_overwrite(self, name, reason):
+        self.overwrite_questions.append((name, reason))
+        return self.overwrite
 
     def tell_error(self, title, text):
         self.errors.append((title, text))
@@ -206,18 +241,46 @@ def nothing_leaks(qapp, request):
 
 
 @pytest.fixture
-def window(nothing_leaks, qtbot, dialogs, tmp_path):
-    """An empty window."""
-    settings = QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat)
-    window = MainWindow(settings, dialogs)
+def state_folder(tmp_path) -> Path:
+    """Where the windows of a test keep their unsaved work: never in the user's own folder."""
+    return tmp_path / "state"
+
+
+def open_window(dialogs: ScriptedDialogs, folder: Path, state_folder: Path) -> MainWindow:
+    """Show an empty window that remembers its layout in a folder."""
+    settings = QSettings(str(folder / "settings.ini"), QSettings.Format.IniFormat)
+    window = MainWindow(settings, dialogs, state_folder)
     window.resize(1280, 800)
     window.show()
     window.activateWindow()
     assert QTest.qWaitForWindowActive(window)
-    yield window
+    return window
+
+
+def close_window(window: MainWindow, dialogs: ScriptedDialogs) -> None:
+    """Close a window without saving."""
     dialogs.unsaved = Answer.DISCARD
     window.close()
     window.deleteLater()
+
+
+@pytest.fixture
+def window(nothing_leaks, qtbot, dialogs, tmp_path, state_folder):
+    """An empty window."""
+    window = open_window(dialogs, tmp_path, state_folder)
+    yield window
+    close_window(window, dialogs)
+
+
+@pytest.fixture
+def another_user(nothing_leaks, qtbot, tmp_path, state_folder):
+    """A second window on the same state folder."""
+    dialogs = ScriptedDialogs()
+    window = open_window(dialogs, tmp_path, state_folder)
+    driver = Driver(window, dialogs, qtbot)
+    driver.settle()
+    yield driver
+    close_window(window, dialogs)
 
 
 @pytest.fixture

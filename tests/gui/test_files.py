@@ -91,6 +91,26 @@ def test_a_landmark_file_dropped_on_a_viewport_belongs_to_that_side(user, tmp_pa
     assert user.editor.undo_label == "Import destination landmarks"
 
 
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("bone.pts", "Version 1.0\n1\nfovea 1 2 3\n"),
+        (
+            "bone.mrk.json",
+            '{"markups": [{"controlPoints": [{"label": "fovea", "position": [1, 2, 3]}]}]}',
+        ),
+        ("BONE.FCSV", "# columns = label,x,y,z,sel,vis\nfovea,1,2,3,1,1\n"),
+    ],
+)
+def test_landmarks_of_other_programs_are_dropped_likewise(user, tmp_path, name, text):
+    path = tmp_path / name
+    path.write_text(text)
+    drop(user.window.viewports[SOURCE], path)
+    user.settle()
+    assert user.session.landmark("fovea").source == (1, 2, 3)
+    assert user.dialogs.errors == []
+
+
 def test_a_session_dropped_on_a_viewport_is_opened(user, sample_copy):
     drop(user.window.viewports[SOURCE], sample_copy)
     user.settle()
@@ -221,6 +241,25 @@ def test_exported_landmarks_come_back_by_import(user, tmp_path, which):
     user.trigger(f"import_{which}")
     assert user.session.landmarks == before.landmarks
     assert user.dialogs.errors == []
+
+
+def test_the_suffix_of_an_export_is_its_format_and_what_it_cannot_hold_is_said(user, tmp_path):
+    user.open_sample()
+    user.dialogs.saves = [tmp_path / "out.tps"]
+    user.trigger("export_source")
+    assert (tmp_path / "out.tps").read_text().startswith("LM3=20\n")
+    assert "only their order was kept" in user.window.statusBar().currentMessage()
+
+
+def test_an_export_that_no_format_holds_says_which_do(user, tmp_path):
+    user.open_sample()
+    user.dialogs.saves = [tmp_path / "out.pts"]
+    user.trigger("export_pairs")
+    title, text = user.dialogs.errors[0]
+    assert title == "Cannot write out.pts"
+    assert "one side only" in text
+    assert "another folder" not in text
+    assert list(tmp_path.glob("out*")) == []
 
 
 def test_a_side_file_is_not_taken_for_pairs(user, tmp_path):

@@ -29,21 +29,21 @@ def plain(label):
 
 
 def test_the_slider_goes_from_interpolation_to_the_affine_fit(user, panel):
-    assert plain(panel.flexibility) == "100%"
-    assert plain(panel.residual) == "0 mm"
+    assert plain(panel.figures.flexibility) == "100%"
+    assert plain(panel.figures.residual) == "0 mm"
     slider = panel.slider
     y = slider.height() // 2
     user.drag(slider, QPoint(8, y), QPoint(slider.width() + 20, y))
     assert math.isinf(user.session.warping_penalty)
     assert panel.value.text() == "affine"
-    assert plain(panel.flexibility) == "0%"
-    assert float(plain(panel.residual).split()[0]) > 1
+    assert plain(panel.figures.flexibility) == "0%"
+    assert float(plain(panel.figures.residual).split()[0]) > 1
 
 
 def test_half_way_leaves_half_of_the_flexibility(user, panel):
     slider = panel.slider
     user.drag(slider, QPoint(8, slider.height() // 2), slider.rect().center())
-    assert plain(panel.flexibility) in ("49%", "50%", "51%")
+    assert plain(panel.figures.flexibility) in ("49%", "50%", "51%")
     assert user.editor.undo_label == "Change penalty"
     user.trigger("undo")
     assert slider.value() == 0
@@ -83,7 +83,7 @@ def test_opynsim_shows_its_poles_and_warns(user, panel):
     assert "poles" in panel.warning.text()
     type_into(user, panel.value, "60")
     assert "pole at" in panel.warning.text()
-    assert plain(panel.flexibility) == "–"
+    assert plain(panel.figures.flexibility) == "–"
 
 
 def test_below_five_pairs_the_penalty_rests_and_says_why(user):
@@ -100,7 +100,7 @@ def test_the_unit_is_chosen_beside_the_value(user, panel):
     panel.unit.setFocus()
     user.press(Qt.Key.Key_Down, widget=panel.unit)
     assert user.session.unit == "cm"
-    assert "cm" in panel.residual.text()
+    assert "cm" in panel.figures.residual.text()
     user.trigger("undo")
     assert panel.unit.currentText() == "mm"
 

@@ -234,7 +234,7 @@ def test_playing_goes_there_and_back_and_leaves_no_trace(user, panel):
 
 def play(user):
     user.window.viewports[SOURCE].setFocus()
-    QTest.keyClick(user.window, Qt.Key.Key_B)
+    QTest.keyClick(user.window, Qt.Key.Key_B, Qt.KeyboardModifier.ShiftModifier)
     user.qtbot.waitUntil(lambda: 0 < user.session.blend < 1, timeout=10_000)
     assert user.editor.is_previewing
 

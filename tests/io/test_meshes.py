@@ -1,7 +1,10 @@
 from __future__ import annotations
 
+import base64
 import hashlib
+import itertools
 import struct
+import tracemalloc
 from pathlib import Path
 from random import Random
 
@@ -14,6 +17,8 @@ from hypothesis.extra import numpy as hnp
 
 from pinwarp.core.errors import FileFormatError, PinwarpError
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.normals import vertex_normals
+from pinwarp.io.mesh_formats.vertex_data import VertexData
 from pinwarp.io.meshes import MESH_SUFFIXES, read_mesh, write_mesh
 
 TETRAHEDRON = Mesh(
@@ -419,6 +424,87 @@ def test_a_damaged_file_is_refused_with_the_reason(
     assert capfd.readouterr() == ("", "")
 
 
+BILLION = 1_000_000_000
+ZLIB = ' compressor="vtkZLibDataCompressor"'
+
+
+def ply(kind: str, vertices: int, faces: int, count: str = "uchar") -> str:
+    return (
+        f"ply\nformat {kind} 1.0\nelement vertex {vertices}\nproperty double x\n"
+        f"property double y\nproperty double z\nelement face {faces}\n"
+        f"property list {count} int vertex_indices\nend_header\n"
+    )
+
+
+def vtk(kind: str, rest: str, version: str = "3.0") -> str:
+    return f"# vtk DataFile Version {version}\na\n{kind}\nDATASET POLYDATA\n{rest}\n"
+
+
+def vtp(data: str, kind: str = "binary", more: str = "") -> str:
+    return (
+        f'<VTKFile type="PolyData" byte_order="LittleEndian" header_type="UInt64"{more}>'
+        f'<PolyData><Piece NumberOfPoints="{BILLION}" NumberOfPolys="{BILLION}"><Points>'
+        f'<DataArray type="Float64" format="{kind}">{data}</DataArray></Points></Piece></PolyData>'
+        "</VTKFile>"
+    )
+
+
+def blocks(*numbers: int) -> str:
+    """A header of compressed blocks, and two bytes of data."""
+    return base64.b64encode(struct.pack(f"<{len(numbers)}Q", *numbers) + b"xx").decode()
+
+
+LITTLE, BIG = "binary_little_endian", "binary_big_endian"
+POINTS = f"POINTS {BILLION} double\n0 0 0"
+POLYGONS = f"POINTS 0 double\n\nPOLYGONS {BILLION} {4 * BILLION}\n"
+OFFSETS = POLYGONS + "OFFSETS vtktypeint64\n0 3"
+FIELD = f"FIELD FieldData 1\na {BILLION} {BILLION} double\n0 0"
+LAUGHS = "".join(
+    f'<!ENTITY {after} "{f"&{before};" * 10}">'
+    for before, after in itertools.pairwise("abcdefghij")
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("count.stl", b" " * 80 + struct.pack("<I", BILLION) + bytes(900)),
+        *((f"{kind}-vertices.ply", ply(kind, BILLION, 1)) for kind in ("ascii", LITTLE, BIG)),
+        *((f"{kind}-faces.ply", ply(kind, 0, BILLION)) for kind in ("ascii", LITTLE, BIG)),
+        (
+            "corners.ply",
+            ply(LITTLE, 0, 1, "uint").encode() + struct.pack("<I", BILLION) + bytes(500),
+        ),
+        ("ascii-corners.ply", ply("ascii", 0, 1, "uint") + f"{BILLION} 0 1 2\n"),
+        ("index.obj", SQUARE_OBJ + f"f 1 2 {BILLION}\n"),
+        ("negative.obj", SQUARE_OBJ + f"f 1 2 -{BILLION}\n"),
+        *((f"{kind}-points.vtk", vtk(kind, POINTS)) for kind in ("ASCII", "BINARY")),
+        *((f"{kind}-polygons.vtk", vtk(kind, POLYGONS + "3 0")) for kind in ("ASCII", "BINARY")),
+        *((f"{kind}-offsets.vtk", vtk(kind, OFFSETS, "5.1")) for kind in ("ASCII", "BINARY")),
+        *((f"{kind}-field.vtk", vtk(kind, FIELD)) for kind in ("ASCII", "BINARY")),
+        ("ascii.vtp", vtp("0 0 0", "ascii")),
+        ("length.vtp", vtp(blocks(8 * BILLION))),
+        ("blocks.vtp", vtp(blocks(BILLION, 8, 8, 8), more=ZLIB)),
+        ("block.vtp", vtp(blocks(1, 24 * BILLION, 0, 2), more=ZLIB)),
+        ("laughs.vtp", f'<!DOCTYPE a [<!ENTITY a "0 ">{LAUGHS}]>' + vtp("&j;", "ascii")),
+    ],
+    ids=lambda value: value if isinstance(value, str) and len(value) < 40 else "",
+)
+def test_a_small_file_that_announces_billions_is_refused_at_once(
+    tmp_path: Path, name: str, content: bytes | str
+) -> None:
+    path = write(tmp_path, name, content)
+    assert path.stat().st_size < 1500
+    tracemalloc.start()
+    try:
+        with pytest.raises(FileFormatError) as caught:
+            read_mesh(path)
+        assert tracemalloc.get_traced_memory()[1] < 10 << 20
+    finally:
+        tracemalloc.stop()
+    assert str(caught.value).startswith(name)
+
+
 @pytest.mark.parametrize("number", [np.nan, np.inf])
 @pytest.mark.parametrize("suffix", MESH_SUFFIXES)
 def test_coordinates_that_are_not_finite_are_refused(
@@ -534,3 +620,46 @@ def test_the_pelves_read_as_vtk_reads_them(shared_data: Path) -> None:
         ours = read_mesh(path).mesh
         np.testing.assert_array_equal(ours.vertices, theirs.points)
         np.testing.assert_array_equal(ours.faces, theirs.regular_faces)
+
+
+# What goes with the vertices
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".obj", ".vtp", ".vtk"])
+def test_normals_are_written_for_other_programs_and_the_mesh_reads_back_the_same(tmp_path, suffix):
+    mesh, path = sphere(), tmp_path / f"a{suffix}"
+    normals = vertex_normals(mesh)
+    write_mesh(path, mesh, VertexData(normals))
+    assert np.array_equal(read_mesh(path).mesh.vertices, mesh.vertices)
+    assert np.array_equal(read_mesh(path).mesh.faces, mesh.faces)
+    seen = pv.read(path)
+    assert np.allclose(seen.point_data.active_normals, normals, atol=1e-6)
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".vtp", ".vtk"])
+def test_scalars_are_written_under_their_names(tmp_path, suffix):
+    mesh, path = sphere(), tmp_path / f"a{suffix}"
+    heights = mesh.vertices[:, 2]
+    write_mesh(path, mesh, VertexData(vertex_normals(mesh), {"height_mm": heights}))
+    assert np.array_equal(read_mesh(path).mesh.vertices, mesh.vertices)
+    if suffix == ".ply":
+        # VTK's PLY reader knows no scalars of one's own.
+        data = path.read_bytes()
+        start = data.index(b"end_header\n") + len(b"end_header\n")
+        fields = [("places", "<f8", 3), ("normals", "<f4", 3), ("height_mm", "<f4")]
+        found = np.frombuffer(data, fields, len(heights), start)["height_mm"]
+    else:
+        found = pv.read(path).point_data["height_mm"]
+    assert np.allclose(found, heights, atol=1e-6)
+
+
+def test_stl_leaves_out_what_it_has_no_room_for(tmp_path):
+    mesh, path = sphere(), tmp_path / "a.stl"
+    write_mesh(path, mesh, VertexData(vertex_normals(mesh), {"height": mesh.vertices[:, 2]}))
+    assert path.stat().st_size == 84 + 50 * len(mesh.faces)
+
+
+@pytest.mark.parametrize("name", ["", "a b", "1st", "x\nend_header"])
+def test_scalars_need_a_name_that_every_format_takes(name):
+    with pytest.raises(ValueError, match="cannot be the name"):
+        VertexData(scalars={name: np.zeros(3)})

@@ -167,6 +167,24 @@ def test_imported_pairs_keep_their_halves():
     assert session.landmark("b").source is None
 
 
+def test_a_name_without_a_position_takes_none_away():
+    session = Session(landmarks=(pair("a"),))
+    names = [Landmark("a"), Landmark("b")]
+    for imported in (
+        edits.import_side(session, SOURCE, names),
+        edits.import_pairs(session, names),
+    ):
+        assert imported.landmarks == (pair("a"), Landmark("b"))
+
+
+def test_a_pair_that_is_switched_off_arrives_so_but_switches_no_other_off():
+    off = replace(pair("b"), enabled=False)
+    session = edits.import_pairs(
+        Session(landmarks=(pair("a"),)), [replace(pair("a"), enabled=False), off]
+    )
+    assert session.landmarks == (pair("a"), off)
+
+
 # Units
 
 

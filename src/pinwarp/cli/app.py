@@ -1,92 +1,63 @@
-"""The ``pinwarp`` command."""
+"""The ``pinwarp`` command: opens the window, unless its first word is another command."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated, Protocol
+from typing import Any
 
 import typer
+from typer.core import TyperGroup
 
-import pinwarp
-from pinwarp.io.file_names import is_session
+from pinwarp.cli.batch import batch
+from pinwarp.cli.check import check
+from pinwarp.cli.convert import convert
+from pinwarp.cli.open import OpenWindow, make_open
+from pinwarp.cli.options import Version
+from pinwarp.cli.telling import BAD_USAGE, tell_error
+from pinwarp.cli.warp import warp
+from pinwarp.core.errors import PinwarpError, words_of
+
+OPEN = "open"
 
 
-class OpenWindow(Protocol):
-    """Opens the window on some files and returns the exit code."""
+class Commands(TyperGroup):
+    """Commands, of which ``open`` need not be said; all errors are told on one line."""
 
-    def __call__(
-        self,
-        *,
-        session: Path | None,
-        source: Path | None,
-        destination: Path | None,
-        source_landmarks: Path | None,
-        destination_landmarks: Path | None,
-        demo: bool,
-        screenshot: Path | None,
-    ) -> int:
-        """Open it."""
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Put in the command where the first word is none."""
+        if not args or args[0] not in (*self.commands, "--help", "--version"):
+            args = [OPEN, *args]
+        return super().parse_args(ctx, args)
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command; what was raised for the user is told, not traced."""
+        try:
+            return super().invoke(ctx)
+        except (PinwarpError, OSError) as error:
+            tell_error(words_of(error))
+            raise typer.Exit(BAD_USAGE) from None
 
 
 def make_app(open_window: OpenWindow) -> typer.Typer:
     """Return the command; the window is handed in, so that this module needs no Qt."""
-    app = typer.Typer(add_completion=False, rich_markup_mode="rich")
+    app = typer.Typer(
+        cls=Commands,
+        add_completion=False,
+        rich_markup_mode="rich",
+        subcommand_metavar="[SOURCE DESTINATION | SESSION | COMMAND ...]",
+    )
 
-    @app.command()
-    def main(
-        files: Annotated[
-            list[Path] | None,
-            typer.Argument(
-                metavar="[SOURCE DESTINATION | SESSION]",
-                help="Two meshes, or a saved session (.pinwarp.csv).",
-                show_default=False,
-            ),
-        ] = None,
-        source_landmarks: Annotated[
-            Path | None, typer.Option(metavar="CSV", help="Landmarks on the source mesh.")
-        ] = None,
-        destination_landmarks: Annotated[
-            Path | None, typer.Option(metavar="CSV", help="Landmarks on the destination mesh.")
-        ] = None,
-        demo: Annotated[bool, typer.Option("--demo", help="Open the sample bones.")] = False,
-        screenshot: Annotated[
-            Path | None,
-            typer.Option(metavar="FILE.png", help="Save a picture of the window and exit."),
-        ] = None,
-        version: Annotated[bool, typer.Option("--version", help="Show the version.")] = False,
+    @app.callback()
+    def pinwarp_(
+        version: Version = False,
     ) -> None:
-        """Pair landmarks on two bones and watch one warp into the other, live."""
-        if version:
-            typer.echo(f"pinwarp {pinwarp.__version__}")
-            return
-        session, source, destination = _sort_files(files or [])
-        if demo and (files or source_landmarks or destination_landmarks):
-            raise typer.BadParameter("--demo opens the sample bones: give no files with it.")
-        raise typer.Exit(
-            open_window(
-                session=session,
-                source=source,
-                destination=destination,
-                source_landmarks=source_landmarks,
-                destination_landmarks=destination_landmarks,
-                demo=demo,
-                screenshot=screenshot,
-            )
-        )
+        """Pair landmarks on two bones and warp one into the other.
 
+        Without a command the window opens: on two meshes, on a session, or empty.
+        See [bold]pinwarp open --help[/bold] for its options.
+        """
+        del version  # told before anything else
+
+    app.command(OPEN)(make_open(open_window))
+    for command in (warp, check, convert, batch):
+        app.command()(command)
     return app
-
-
-def _sort_files(files: list[Path]) -> tuple[Path | None, Path | None, Path | None]:
-    """Tell a session from meshes."""
-    for path in files:
-        if not path.exists():
-            raise typer.BadParameter(f"{path} does not exist.")
-    if len(files) == 1 and is_session(files[0]):
-        return files[0], None, None
-    if any(is_session(path) for path in files):
-        raise typer.BadParameter("Give one session, or a source and a destination mesh.")
-    if len(files) > 2:
-        raise typer.BadParameter("Give at most two meshes: the source and the destination.")
-    source, destination = (*files, None, None)[:2]
-    return None, source, destination

@@ -27,6 +27,11 @@ class Components(StrEnum):
     ``SIMILARITY`` and ``RIGID`` are the least-squares fits of the pairs (the affine one is the
     warp at infinite penalty), not what is left of the spline without its weights: that would be
     the warp far away from the bone.
+
+    Examples
+    --------
+    >>> [part.value for part in Components]
+    ['full', 'without pose', 'affine', 'similarity', 'rigid']
     """
 
     FULL = "full"

@@ -22,7 +22,17 @@ from pathlib import Path
 
 
 class PinwarpError(Exception):
-    """Whatever pinwarp raises on purpose: its message is meant for the user."""
+    """Whatever pinwarp raises on purpose: its message is meant for the user.
+
+    Examples
+    --------
+    >>> from pinwarp.tps3d import solve_coefficients
+    >>> try:
+    ...     solve_coefficients([[0, 0, 0]], [[0, 0, 1]], warping_penalty=-1)
+    ... except PinwarpError as error:
+    ...     print(error)
+    The warping penalty is -1.0; it must be 0 or more.
+    """
 
 
 class LandmarkError(PinwarpError, ValueError):
@@ -66,8 +76,34 @@ class NewerFileError(FileFormatError):
     """A session written by a newer pinwarp: refused rather than half-read."""
 
 
+def words_of(error: Exception) -> str:
+    """Return what the user should read about an error.
+
+    Examples
+    --------
+    >>> words_of(PermissionError(13, "Permission denied", "bone.stl"))
+    'bone.stl: Permission denied.'
+    """
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename or 'The file'}: {error.strerror}."
+    return str(error)
+
+
 class PinwarpWarning(UserWarning):
-    """A result that can be used but should be looked at."""
+    """A result that can be used but should be looked at.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> from pinwarp.tps3d import solve_coefficients
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("error", PinwarpWarning)
+    ...     try:
+    ...         solve_coefficients([[0, 0, 0], [0, 0, 0]], [[0, 0, 0], [1, 0, 0]])
+    ...     except PinwarpWarning as warning:
+    ...         print(type(warning).__name__)
+    ConflictingLandmarksWarning
+    """
 
 
 class ConflictingLandmarksWarning(PinwarpWarning):

@@ -16,7 +16,13 @@ Position = tuple[float, float, float]
 
 
 class Side(StrEnum):
-    """Which of the two meshes a position is on."""
+    """Which of the two meshes a position is on.
+
+    Examples
+    --------
+    >>> Side.SOURCE.other.value
+    'destination'
+    """
 
     SOURCE = "source"
     DESTINATION = "destination"
@@ -28,7 +34,13 @@ class Side(StrEnum):
 
 
 class Role(StrEnum):
-    """What a landmark is for."""
+    """What a landmark is for: a pair is solved for, a passenger only carried along.
+
+    Examples
+    --------
+    >>> Landmark("muscle_insertion", source=(1, 2, 3), role=Role.PASSENGER).is_pair
+    False
+    """
 
     PAIR = "pair"
     PASSENGER = "passenger"
@@ -170,3 +182,59 @@ def duplicate_names(landmarks: Iterable[Landmark]) -> list[str]:
             repeated[landmark.name] = None
         seen.add(landmark.name)
     return list(repeated)
+
+
+def flipped(landmarks: Iterable[Landmark], side: Side) -> tuple[Landmark, ...]:
+    """Turn the positions on one side from LPS to RAS or back: x and y change their sign.
+
+    Parameters
+    ----------
+    landmarks
+        Those without a position there stay as they are.
+    side
+        The side to turn.
+
+    Examples
+    --------
+    >>> flipped([Landmark("nasion", source=(1.0, 2.0, 3.0))], Side.SOURCE)[0].source
+    (-1.0, -2.0, 3.0)
+    """
+    return tuple(
+        landmark if (at := landmark.position(side)) is None else landmark.placed(side, _turned(at))
+        for landmark in landmarks
+    )
+
+
+def _turned(position: Position) -> Position:
+    x, y, z = position
+    return (-x, -y, z)
+
+
+def scaled(landmarks: Iterable[Landmark], factor: float) -> tuple[Landmark, ...]:
+    """Multiply every position that is there, as a change of unit does.
+
+    Parameters
+    ----------
+    landmarks
+        Both sides of them are scaled.
+    factor
+        1000 from metres to millimetres.
+
+    Raises
+    ------
+    LandmarkError
+        When a coordinate becomes too large for a number.
+
+    Examples
+    --------
+    >>> scaled([Landmark("nasion", source=(0.5, 0.25, -1.0))], 1000)[0].source
+    (500.0, 250.0, -1000.0)
+    """
+    result = []
+    for landmark in landmarks:
+        for side in Side:
+            position = landmark.position(side)
+            if position is not None:
+                landmark = landmark.placed(side, (factor * value for value in position))
+        result.append(landmark)
+    return tuple(result)

@@ -20,7 +20,7 @@ from pinwarp.core.spline import Spline, check_penalty, displacements
 
 Matrix = NDArray[np.float64]
 
-# Penalties of a curve beside 0, and how far beyond the modes they reach.
+# Penalties of a curve between its ends, and how far beyond the modes they reach.
 SAMPLES = 60
 MARGIN = 10.0
 # A minimum that is not lower than both ends by this share is none.
@@ -141,6 +141,8 @@ def _pulls(
 class PenaltyCurve:
     """The figures of a warp over the warping penalty, one row for each penalty.
 
+    Between two penalties they are taken to run straight over the flexibility.
+
     Attributes
     ----------
     penalties : (k,) float64
@@ -153,6 +155,8 @@ class PenaltyCurve:
     suggested : float or None
         The penalty with the least leave-one-out error; None where that is at an end of the
         curve, so that the data ask for no penalty or for all of it.
+    is_affine : bool
+        Whether an affine map meets every pair: the penalty then changes nothing.
     """
 
     penalties: Matrix
@@ -160,6 +164,35 @@ class PenaltyCurve:
     residual: Matrix
     flexibility: Matrix
     suggested: float | None
+    is_affine: bool
+
+    def at(self, flexibility: float) -> tuple[float, float]:
+        """Return the leave-one-out error and the residual at a flexibility.
+
+        Parameters
+        ----------
+        flexibility
+            From 0 to 1; beyond the ends of the curve its ends are returned.
+
+        Returns
+        -------
+        leave_one_out, residual
+            Root mean squares in destination mesh units.
+
+        Examples
+        --------
+        >>> from pinwarp.core.factor import factorise
+        >>> rng = np.random.default_rng(0)
+        >>> source, destination = rng.normal(size=(9, 3)), rng.normal(size=(9, 3))
+        >>> curve = penalty_curve(factorise(source), destination)
+        >>> curve.at(0.0) == (curve.leave_one_out[-1], curve.residual[-1])
+        True
+        """
+        share, shares = 1.0 - flexibility, 1.0 - self.flexibility
+        return (
+            float(np.interp(share, shares, self.leave_one_out)),
+            float(np.interp(share, shares, self.residual)),
+        )
 
 
 def penalty_curve(
@@ -174,8 +207,8 @@ def penalty_curve(
     destination
         (n, 3) destination landmarks.
     penalties
-        (k,) penalties in mesh units; without them 0 and 60 from a tenth of the softest mode to
-        ten times the stiffest, evenly on a logarithmic scale.
+        (k,) penalties in mesh units; without them 0, then 60 from a tenth of the softest mode to
+        ten times the stiffest, evenly on a logarithmic scale, and infinity.
 
     Returns
     -------
@@ -189,7 +222,7 @@ def penalty_curve(
     >>> noisy = source + 0.2 * np.sin(source) + 0.05 * rng.normal(size=(30, 3))
     >>> curve = penalty_curve(factorise(source), noisy)
     >>> len(curve.penalties), curve.suggested is not None
-    (61, True)
+    (62, True)
     """
     displacement, _, _ = displacements(factor, destination)
     poles = factor.poles
@@ -197,7 +230,7 @@ def penalty_curve(
         grid = np.sort([check_penalty(penalty) for penalty in np.ravel(penalties)])
     elif len(poles):
         low, high = np.log(poles[0] / MARGIN), np.log(poles[-1] * MARGIN)
-        grid = np.concatenate([[0.0], np.exp(np.linspace(low, high, SAMPLES))])
+        grid = np.concatenate([[0.0], np.exp(np.linspace(low, high, SAMPLES)), [np.inf]])
     else:
         grid = np.zeros(1)
     pulls, diagonal, residual = _pulls(factor, displacement, grid)
@@ -206,12 +239,18 @@ def penalty_curve(
     errors = np.full(len(grid), np.nan)
     if judged.any():
         errors = np.sqrt(np.mean(squares[judged] / diagonal[judged] ** 2, axis=0))
+    rounding = ROUNDING * float(np.abs(np.asarray(destination)).max())
+    is_affine = bool(judged.any() and errors.max() <= rounding)
+    if is_affine:
+        # What is left is rounding, and no figure.
+        errors, residual = np.zeros_like(errors), np.zeros_like(residual)
     return PenaltyCurve(
         penalties=grid,
         leave_one_out=errors,
         residual=residual,
         flexibility=np.array([factor.flexibility(penalty) for penalty in grid.tolist()]),
-        suggested=_suggested(grid, errors),
+        suggested=None if is_affine else _suggested(grid, errors),
+        is_affine=is_affine,
     )
 
 

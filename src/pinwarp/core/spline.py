@@ -37,6 +37,11 @@ class PenaltyConvention(StrEnum):
     ``REGULARISING`` solves ``K - s I`` with ``U = +r``: it penalises at every value, from
     interpolation at 0 to the affine fit at infinity. ``OPYNSIM`` solves the published
     ``K + alpha I`` with ``U = +r``, as OPynSim and thin-plate-spline >= 1.2 do, poles included.
+
+    Examples
+    --------
+    >>> PenaltyConvention("opynsim").sign, PenaltyConvention.REGULARISING.sign
+    (-1, 1)
     """
 
     REGULARISING = "regularising"

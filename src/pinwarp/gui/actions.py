@@ -22,6 +22,7 @@ class ActionSpec:
     icon: str = ""
     tip: str = ""
     checkable: bool = False
+    button: str = ""
 
 
 SPECS = (
@@ -39,12 +40,13 @@ SPECS = (
     ActionSpec("open_sample", "Open Sample &Bones", "", "", "Two femurs to try things on"),
     ActionSpec("save", "&Save Session", "Ctrl+S", "save", "Save the session"),
     ActionSpec("save_as", "Save Session &As…", "Ctrl+Shift+S"),
+    ActionSpec("restore", "Restore &Unsaved Work…", "", "", "Of windows that ended unexpectedly"),
     ActionSpec("import_source", "Source Landmarks…", "Ctrl+Shift+1", "", "From a CSV file"),
     ActionSpec("import_destination", "Destination Landmarks…", "Ctrl+Shift+2", "", "From a CSV"),
     ActionSpec("import_pairs", "Landmark Pairs…", "", "", "From a CSV file with both sides"),
-    ActionSpec("export_source", "Source Landmarks…"),
-    ActionSpec("export_destination", "Destination Landmarks…"),
-    ActionSpec("export_pairs", "Landmark Pairs…"),
+    ActionSpec("export_source", "&Source Landmarks…"),
+    ActionSpec("export_destination", "&Destination Landmarks…"),
+    ActionSpec("export_pairs", "&Landmark Pairs…"),
     ActionSpec(
         "export_mesh", "&Export Warped Mesh…", "Ctrl+E", "export", "Save the warped source mesh"
     ),
@@ -54,6 +56,14 @@ SPECS = (
         "Ctrl+Shift+E",
         "",
         "Pictures, pairs and quality, as HTML",
+    ),
+    ActionSpec("export_picture", "Pi&cture…", "", "", "Of the views, at any size"),
+    ActionSpec("export_animation", "&Animation…", "", "", "Turned round, or warped and back"),
+    ActionSpec("export_warped", "&Warped Landmarks…", "", "", "Where the warp carries the pairs"),
+    ActionSpec("export_coefficients", "Coe&fficients…", "", "", "Of the warp, as JSON or .npz"),
+    ActionSpec("export_script", "Scr&ipt…", "", "", "Python that warps the mesh again"),
+    ActionSpec(
+        "warp_files", "&Warp Files…", "", "", "Other meshes and landmarks, by the same warp"
     ),
     ActionSpec("quit", "&Quit", "Ctrl+Q"),
     ActionSpec("undo", "&Undo", "Ctrl+Z", "undo"),
@@ -127,7 +137,7 @@ SPECS = (
     ActionSpec("apply_affine", "&Affine Fit Only", "", "", "Turned, moved, sized, sheared", True),
     ActionSpec("apply_similarity", "&Similarity Fit Only", "", "", "Turned, moved, sized", True),
     ActionSpec("apply_rigid", "&Rigid Fit Only", "", "", "Turned and moved", True),
-    ActionSpec("play_blend", "&Play Blend", "B", "play", "From the source to the warp", True),
+    ActionSpec("play_blend", "&Play Blend", "Shift+B", "play", "From the source to the warp", True),
     ActionSpec("copy_figures", "&Copy Figures", "", "", "The warp taken apart, as a table"),
     ActionSpec("grid_none", "&None", "", "", "No grid", True),
     ActionSpec("grid_box", "&Box", "", "", "Straight on the source, bent by the warp", True),
@@ -135,6 +145,34 @@ SPECS = (
     ActionSpec("grid_plane_y", "Plane Across &Y", "", "", "Of the source's axes", True),
     ActionSpec("grid_plane_z", "Plane Across &Z", "", "", "Of the source's axes", True),
     ActionSpec("grid_next", "N&ext Grid", "D"),
+    ActionSpec(
+        "take_suggested",
+        "Take &Suggested Penalty",
+        "T",
+        "",
+        "The one with the least leave-one-out error",
+    ),
+    ActionSpec(
+        "swap_penalty",
+        # Behind the tab stands the key that is held; the action itself has none.
+        "Compare with &Previous Penalty\tB (hold)",
+        "",
+        "",
+        "Go back to the previous penalty; hold B only to look at it",
+    ),
+    ActionSpec(
+        "snapshot",
+        "Take S&napshot",
+        "P",
+        "",
+        "A picture of the warp at this penalty",
+        button="Snapshot",
+    ),
+    ActionSpec("sweep", "S&weep: 5 Snapshots", "", "", "From interpolation to the affine fit"),
+    ActionSpec("clear_snapshots", "&Clear Snapshots"),
+    ActionSpec(
+        "show_curve", "Penalty C&urve", "", "", "Leave-one-out error and residual", True, "Curve"
+    ),
     ActionSpec("markers_larger", "La&rger Landmarks", "]"),
     ActionSpec("markers_smaller", "S&maller Landmarks", "["),
     ActionSpec("wireframe", "W&ireframe Bones", "Shift+W", "", "Draw edges only", True),
@@ -175,6 +213,8 @@ def make_actions(parent: QObject) -> dict[str, QAction]:
             action.setShortcut(QKeySequence(spec.shortcut))
             words = f"{words} ({spec.shortcut})"
         action.setToolTip(words)
+        if spec.button:
+            action.setIconText(spec.button)
         if spec.icon:
             action.setIcon(icon(spec.icon))
         actions[spec.key] = action

@@ -32,9 +32,10 @@ class PrintedMessages(Dialogs):
     def __init__(self) -> None:
         self.errors: list[str] = []
 
-    def ask_missing_mesh(self, side: str, path: Path) -> Path | None:
+    def ask_missing_mesh(self, side: str, path: Path, other: Path | None) -> Path | None:
         """Go on without the mesh, and say so."""
-        self.tell_error("Mesh not found", f"The {side} mesh {path} is not there.")
+        there = f" {other} has its name but not its content." if other is not None else ""
+        self.tell_error("Mesh not found", f"The {side} mesh {path} is not there.{there}")
         return None
 
     def tell_error(self, title: str, text: str) -> None:
@@ -94,12 +95,13 @@ def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None)
     # The spline's own threads and BLAS's would fight over the cores.
     with threadpool_limits(limits=1, user_api="blas"):
         dialogs = PrintedMessages() if screenshot is not None else None
-        window = MainWindow(user_settings() if screenshot is None else no_settings(), dialogs)
+        window = (
+            MainWindow(user_settings(), state_folder=platformdirs.user_state_path("pinwarp"))
+            if screenshot is None
+            else MainWindow(no_settings(), dialogs)
+        )
         window.show()
-        if demo:
-            window.documents.open_session(sample_session(), as_new=True)
-        else:
-            window.documents.open(opening)
+        begin(window, opening, demo=demo)
         if screenshot is None:
             # Loading numba takes a second of the interpreter's time: after the first picture.
             warm_up = threading.Thread(target=_warm_up, daemon=True)
@@ -116,6 +118,16 @@ def _warm_up() -> None:
     """Load all that is compiled, what is needed first before the rest."""
     kernel.warm_up()
     surface_distance.warm_up()
+
+
+def begin(window: MainWindow, opening: Opening, *, demo: bool = False) -> None:
+    """Offer what was lost before; without it, open what the command line names."""
+    if window.recovery.offer(instead_of=opening.paths):
+        return
+    if demo:
+        window.documents.open_session(sample_session(), as_new=True)
+    else:
+        window.documents.open(opening)
 
 
 def save_picture(window: MainWindow, path: Path) -> bool:

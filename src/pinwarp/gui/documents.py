@@ -1,4 +1,4 @@
-"""Files and the session: open, import, save, with every question and message about them."""
+"""Files into the session: open and import, with every question and message about them."""
 
 from __future__ import annotations
 
@@ -6,30 +6,30 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from pinwarp.core.errors import PinwarpError
+from pinwarp.core.errors import PinwarpError, words_of
 from pinwarp.core.landmarks import Side
-from pinwarp.core.mesh import Mesh
-from pinwarp.gui.dialogs import Answer
+from pinwarp.gui.dialogs import OpenTwice
 from pinwarp.gui.file_tasks import (
     LANDMARK_FILES,
     MESH_FILES,
     SESSION_FILES,
     FileTasks,
-    Progress,
-    words_of,
 )
-from pinwarp.gui.jobs import Cancelled
 from pinwarp.gui.recent_files import RecentFiles
-from pinwarp.gui.surface import Surface
-from pinwarp.io.file_names import SESSION_SUFFIX, is_session
-from pinwarp.io.landmark_formats.opensim_creator import LandmarkReading, read_landmarks
-from pinwarp.io.meshes import MESH_SUFFIXES, MeshFile, read_mesh
-from pinwarp.io.session_file import MeshReference, read_session, write_session
+from pinwarp.gui.recovery import where_open
+from pinwarp.gui.saving import Saving
+from pinwarp.gui.session_meshes import SessionMeshes
+from pinwarp.io.file_names import SESSION_SUFFIX, is_backup, is_session, session_name
+from pinwarp.io.landmark_files import LANDMARK_SUFFIXES, LandmarkReading, read_landmarks
+from pinwarp.io.meshes import MESH_SUFFIXES, MeshFile
+from pinwarp.io.reading import hash_of
+from pinwarp.io.session_file import read_session
 from pinwarp.io.template import read_template
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.guide import next_incomplete, with_template
-from pinwarp.session.session import Session, from_record, to_record
+from pinwarp.session.recovery import OtherWindow
+from pinwarp.session.session import Session
 
 # Two bones of one kind never differ so much in size.
 UNLIKELY_RATIO = 50.0
@@ -45,9 +45,16 @@ class Opening:
     source_landmarks: Path | None = None
     destination_landmarks: Path | None = None
 
+    @property
+    def paths(self) -> list[Path]:
+        """All of them."""
+        files = (self.session, self.source, self.destination)
+        landmarks = (self.source_landmarks, self.destination_landmarks)
+        return [path for path in (*files, *landmarks) if path is not None]
+
 
 class Documents:
-    """Carries files into the editor and out of it.
+    """Carries files into the editor.
 
     Reading runs as a job; the session changes only once everything was read, so that a bad file
     loses nothing.
@@ -60,8 +67,12 @@ class Documents:
         Runs, asks and tells.
     recent
         Remembers sessions.
-    keep_surface
-        Called with a mesh that was read and its surface, made ready in the job.
+    saving
+        Asks about unsaved work before something else takes its place.
+    meshes
+        Reads meshes, and finds those of a session.
+    window_with
+        Returns another living window that has a session open.
     """
 
     def __init__(
@@ -69,18 +80,16 @@ class Documents:
         editor: Editor,
         tasks: FileTasks,
         recent: RecentFiles,
-        keep_surface: Callable[[Mesh, Surface], None],
+        saving: Saving,
+        meshes: SessionMeshes,
+        window_with: Callable[[Path], OtherWindow | None],
     ) -> None:
         self._editor = editor
         self._tasks = tasks
         self._recent = recent
-        self._keep_surface = keep_surface
-
-    @property
-    def name(self) -> str:
-        """What the session is called."""
-        path = self._editor.path
-        return path.name.removesuffix(SESSION_SUFFIX) if path is not None else "Untitled"
+        self._saving = saving
+        self._meshes = meshes
+        self._window_with = window_with
 
     # Opening
 
@@ -105,7 +114,7 @@ class Documents:
         """Open files dropped onto a viewport: a session, meshes or landmarks of that side."""
         sessions = [path for path in paths if is_session(path)]
         if sessions:
-            if self.may_lose_changes():
+            if self._saving.may_lose_changes():
                 self.open_session(sessions[0])
             return
         meshes = [path for path in paths if path.suffix.lower() in MESH_SUFFIXES]
@@ -114,14 +123,14 @@ class Documents:
             self.open_mesh(mesh_side, path)
         others = [path for path in paths if path not in meshes]
         for path in others:
-            if path.suffix.lower() in (".csv", ".txt"):
+            if path.name.lower().endswith(LANDMARK_SUFFIXES):
                 self.import_landmarks(path, side)
             else:
                 suffixes = ", ".join(MESH_SUFFIXES)
                 self._tasks.dialogs.tell_error(
                     "Cannot open this file",
-                    f"{path.name} is neither a mesh ({suffixes}) nor landmarks or a session "
-                    "(.csv).",
+                    f"{path.name} is neither a mesh ({suffixes}) nor landmarks "
+                    f"({', '.join(LANDMARK_SUFFIXES)}) nor a session ({SESSION_SUFFIX}).",
                 )
 
     def ask_and_open_mesh(self, side: Side) -> None:
@@ -142,7 +151,7 @@ class Documents:
             self._compare_sizes(session)
 
         self._tasks.run(
-            f"Reading {path.name}", lambda progress: self._read_mesh(path, progress), arrived
+            f"Reading {path.name}", lambda progress: self._meshes.read(path, progress), arrived
         )
 
     def _compare_sizes(self, session: Session) -> None:
@@ -166,7 +175,7 @@ class Documents:
 
     def ask_and_open_session(self) -> None:
         """Ask for a session and open it."""
-        if not self.may_lose_changes():
+        if not self._saving.may_lose_changes():
             return
         path = self._tasks.dialogs.ask_open("Open a session", SESSION_FILES, self._tasks.folder())
         if path is not None:
@@ -174,47 +183,32 @@ class Documents:
 
     def open_session(self, path: Path, *, as_new: bool = False) -> None:
         """Open a session with its meshes; ``as_new`` forgets where it came from."""
+        # Saving to a backup would lose what it is kept for.
+        as_new = as_new or is_backup(path)
+        if not as_new and (other := self._window_with(path)) is not None:
+            name = session_name(path)
+            match self._tasks.dialogs.ask_open_twice(name, where_open(other)):
+                case OpenTwice.CANCEL:
+                    return
+                case OpenTwice.COPY:
+                    as_new = True
+        # Before the reading: what is written in between is then noticed when saving.
+        sha256 = hash_of(path)
         try:
             record = read_session(path)
         except (PinwarpError, OSError) as error:
             self._tasks.dialogs.tell_error("Cannot open the session", words_of(error))
             return
-        places = {
-            Side.SOURCE: self._locate(Side.SOURCE, record.source_mesh),
-            Side.DESTINATION: self._locate(Side.DESTINATION, record.destination_mesh),
-        }
 
-        def read(progress: Progress) -> dict[Side, MeshFile | PinwarpError]:
-            files: dict[Side, MeshFile | PinwarpError] = {}
-            for side, place in places.items():
-                try:
-                    if place is not None:
-                        files[side] = self._read_mesh(place, progress)
-                except Cancelled:
-                    raise
-                except PinwarpError as error:
-                    files[side] = error
-            return files
-
-        def arrived(files: dict[Side, MeshFile | PinwarpError]) -> None:
-            found = {side: file for side, file in files.items() if isinstance(file, MeshFile)}
-            session = from_record(record, found.get(Side.SOURCE), found.get(Side.DESTINATION))
-            self._editor.replace_all(session, None if as_new else path)
-            if not as_new:
+        def arrived(session: Session) -> None:
+            if as_new:
+                self._editor.replace_all(session, None)
+            else:
+                self._editor.replace_all(session, path, sha256=sha256)
                 self._recent.add(path)
             self._tasks.said.emit(f"Opened {path.name}: {len(session.pairs)} pairs")
-            problems = [str(error) for error in files.values() if isinstance(error, PinwarpError)]
-            if problems:
-                self._tasks.dialogs.tell_error("Opened without a mesh", "\n".join(problems))
 
-        self._tasks.run(f"Opening {path.name}", read, arrived)
-
-    def _locate(self, side: Side, reference: MeshReference | None) -> Path | None:
-        if reference is None:
-            return None
-        if reference.path.is_file():
-            return reference.path
-        return self._tasks.dialogs.ask_missing_mesh(side.value, reference.path)
+        self._meshes.open(record, path.parent, f"Opening {path.name}", arrived)
 
     def ask_and_import_landmarks(self, side: Side | None) -> None:
         """Ask for a landmark file and read it; without a side it must hold pairs."""
@@ -257,8 +251,7 @@ class Documents:
         loaded
             Called with the first landmark that is not complete then.
         """
-        filters = "Landmark lists (*.csv *.txt);;All files (*)"
-        path = self._tasks.dialogs.ask_open("Load a template", filters, self._tasks.folder())
+        path = self._tasks.dialogs.ask_open("Load a template", LANDMARK_FILES, self._tasks.folder())
         if path is None:
             return
 
@@ -273,7 +266,8 @@ class Documents:
     def _report_import(self, path: Path, reading: LandmarkReading) -> None:
         count = len(reading.landmarks)
         what = "pair" if reading.is_pairs else "landmark"
-        self._tasks.said.emit(f"{count} {what}{'' if count == 1 else 's'} from {path.name}")
+        summary = f"{count} {what}{'' if count == 1 else 's'} from {path.name} ({reading.format})"
+        self._tasks.said.emit(". ".join((summary, *reading.notes)))
         if reading.skipped:
             lines = [
                 f"Line {line.line}: {line.reason}\n    {line.text}" for line in reading.skipped
@@ -285,50 +279,6 @@ class Documents:
                 f"{number} line{' was' if number == 1 else 's were'} skipped.",
                 "\n".join(lines),
             )
-
-    # Saving
-
-    def may_lose_changes(self) -> bool:
-        """Ask about unsaved changes; False when the user would rather stay."""
-        if not self._editor.is_dirty:
-            return True
-        answer = self._tasks.dialogs.ask_unsaved(self.name)
-        if answer is Answer.SAVE:
-            return self.save()
-        return answer is Answer.DISCARD
-
-    def save(self) -> bool:
-        """Save where the session came from, or ask; say whether it was saved."""
-        return self._save_to(self._editor.path) if self._editor.path else self.save_as()
-
-    def save_as(self) -> bool:
-        """Ask where to save; say whether it was saved."""
-        proposal = self._editor.path or (
-            self._tasks.folder() / f"{self.name.lower()}{SESSION_SUFFIX}"
-        )
-        path = self._tasks.dialogs.ask_save("Save the session", SESSION_FILES, proposal)
-        if path is None:
-            return False
-        if not is_session(path):
-            path = path.with_name(path.name.removesuffix(".csv") + SESSION_SUFFIX)
-        return self._save_to(path)
-
-    def _save_to(self, path: Path) -> bool:
-        if not self._tasks.write(
-            lambda: write_session(path, to_record(self._editor.committed)), path
-        ):
-            return False
-        self._editor.mark_saved(path)
-        self._recent.add(path)
-        self._tasks.said.emit(f"Saved {path.name}")
-        return True
-
-    def _read_mesh(self, path: Path, progress: Progress) -> MeshFile:
-        file = read_mesh(path, progress=lambda share, stage: progress(0.7 * share, stage))
-        progress(0.75, "preparing to draw")
-        self._keep_surface(file.mesh, Surface(file.mesh))
-        progress(1.0, "done")
-        return file
 
 
 def _mesh_summary(file: MeshFile) -> str:

@@ -15,6 +15,10 @@ further right, the more it becomes the affine fit, which only shifts, turns, sca
 It is a length, in the unit of the meshes.</p>
 <p>The slider runs along the <b>flexibility</b>: the share of bending that the penalty leaves. That
 scale is the same for metres and millimetres and for ten landmarks or a hundred.</p>
+<p>The <b>curve</b> above the slider shows how far the landmarks miss theirs when they take part in
+the solve (residual) and when each is left out of it (leave-one-out). Where the latter is least, the
+pairs predict one another best: that penalty is suggested. Hold <b>B</b> to see the previous
+penalty, and take snapshots (<b>P</b>) to have several side by side.</p>
 <p><b>Regularising</b> penalises at every value. <b>OPynSim</b> is the equation as published,
 K + &alpha;I with the basis U = +r: its matrix is negative where it should be positive, so that the
 warp overshoots before each of its poles (the ticks on the slider) and is worse than the affine

@@ -30,13 +30,16 @@ class _Work(QRunnable):
         self._outcome = outcome
 
     def run(self) -> None:
+        # On a busy machine PySide now and then keeps a runnable for ever: without a window then.
+        function, outcome = self._function, self._outcome
+        del self._function, self._outcome
         result, error = None, None
         try:
-            result = self._function()
+            result = function()
         except Exception as exception:  # handed to the UI thread, which shows or raises it
             error = exception
         try:
-            self._outcome.finished.emit(self._number, result, error)
+            outcome.finished.emit(self._number, result, error)
         except RuntimeError:  # the window closed while this was computed
             return
 

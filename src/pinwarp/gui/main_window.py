@@ -11,8 +11,6 @@ from qtpy.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QMainWindow,
-    QProgressBar,
-    QPushButton,
     QSizePolicy,
     QSlider,
     QSplitter,
@@ -29,12 +27,14 @@ from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Documents
 from pinwarp.gui.exports import Exports
 from pinwarp.gui.file_tasks import FileTasks
+from pinwarp.gui.file_warping import FileWarping
 from pinwarp.gui.findings_panel import FindingsPanel
 from pinwarp.gui.findings_presenter import FindingsPresenter
 from pinwarp.gui.grid_presenter import GridPresenter
 from pinwarp.gui.guidance import Guidance
 from pinwarp.gui.guide_bar import GuideBar
 from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY, ABOUT_QUALITY
+from pinwarp.gui.job_progress import JobProgress
 from pinwarp.gui.jobs import SlowJob
 from pinwarp.gui.landmark_panel import LandmarkPanel
 from pinwarp.gui.landmark_table import LandmarkModel, LandmarkTable
@@ -42,16 +42,24 @@ from pinwarp.gui.map_panel import MapPanel
 from pinwarp.gui.map_presenter import MapPresenter
 from pinwarp.gui.menus import fill_toolbar, make_menus, shortcut_groups
 from pinwarp.gui.penalty_panel import PenaltyPanel
+from pinwarp.gui.penalty_tuning import PenaltyTuning
+from pinwarp.gui.picture_export import PictureExport
 from pinwarp.gui.presenter import Presenter
 from pinwarp.gui.quality_presenter import QualityPresenter
 from pinwarp.gui.recent_files import RecentFiles
+from pinwarp.gui.recovery import Recovery
 from pinwarp.gui.report_export import ReportExport
+from pinwarp.gui.saving import Saving
+from pinwarp.gui.session_meshes import SessionMeshes
 from pinwarp.gui.shortcut_overlay import ShortcutOverlay
+from pinwarp.gui.snapshot_strip import SnapshotStrip
+from pinwarp.gui.stepped_job import SteppedJob
 from pinwarp.gui.table_presenter import TablePresenter
 from pinwarp.gui.view_controls import ViewControls
 from pinwarp.gui.viewport import Viewport
 from pinwarp.gui.warp_panel import WarpPanel
 from pinwarp.gui.warp_presenter import WarpPresenter
+from pinwarp.io.file_names import session_name
 from pinwarp.io.samples import sample_session
 from pinwarp.session.editor import Editor
 
@@ -65,18 +73,29 @@ class MainWindow(QMainWindow):
         Where the layout and the recent files are remembered.
     dialogs
         Asks and tells; the real ones when None.
+    state_folder
+        Where unsaved work is kept in case the program dies; None keeps none.
     """
 
-    def __init__(self, settings: QSettings, dialogs: Dialogs | None = None) -> None:
+    def __init__(
+        self,
+        settings: QSettings,
+        dialogs: Dialogs | None = None,
+        state_folder: Path | None = None,
+    ) -> None:
         super().__init__()
         self._settings = settings
         self.editor = Editor()
         self.viewports = {side: Viewport(side) for side in Side}
         self.model = LandmarkModel(self)
         self.table = LandmarkTable(self.model)
-        self.panel = PenaltyPanel()
         self.jobs = SlowJob(self)
+        self.stepped = SteppedJob(self)
         self.actions_by_key = make_actions(self)
+        self.panel = PenaltyPanel(self.actions_by_key)
+        self.snapshot_strip = SnapshotStrip(
+            [self.actions_by_key[key] for key in ("snapshot", "sweep", "clear_snapshots")]
+        )
         self.warp_panel = WarpPanel(self.actions_by_key)
         self.map_panel = MapPanel(self.actions_by_key["place_suggested"])
         self.findings = FindingsPanel()
@@ -100,6 +119,17 @@ class MainWindow(QMainWindow):
             self.presenter.requests,
             self._say,
         )
+        self.tuning = PenaltyTuning(
+            self.editor,
+            self.presenter,
+            self.quality,
+            self.viewports,
+            self.panel,
+            self.snapshot_strip,
+            self.actions_by_key,
+            self._say,
+            self,
+        )
         self._bone_edits = BoneEdits(self.editor, self.actions_by_key, self)
         self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
         self.view_controls.add_to(self.findChild(QToolBar, "tools"))
@@ -110,13 +140,23 @@ class MainWindow(QMainWindow):
             self.editor, self.presenter, self.viewports, self.actions_by_key, self
         )
         self.statusBar().addPermanentWidget(self.warp_presenter.note)
-        self._tasks = FileTasks(self.editor, self.jobs, self._dialogs)
+        self._tasks = FileTasks(self.editor, self.jobs, self.stepped, self._dialogs)
+        meshes = SessionMeshes(self._tasks, self.presenter.keep_surface)
+        self.saving = Saving(self.editor, self._tasks, self._recent)
+        self.recovery = Recovery(self.editor, self._tasks, self.saving, meshes, state_folder, self)
         self.documents = Documents(
-            self.editor, self._tasks, self._recent, self.presenter.keep_surface
+            self.editor,
+            self._tasks,
+            self._recent,
+            self.saving,
+            meshes,
+            self.recovery.window_with,
         )
         self.exports = Exports(self.editor, self._tasks)
+        self._pictures = PictureExport(self.editor, self._tasks, self.viewports, self)
+        self._file_warping = FileWarping(self.editor, self._tasks)
         self._report_export = ReportExport(
-            self.editor, self._tasks, self.viewports, lambda: self.documents.name
+            self.editor, self._tasks, self.viewports, lambda: session_name(self.editor.path)
         )
         self.guidance = Guidance(
             self.editor, self.presenter, self.documents, self._dialogs, self.guide_bar, self.hint
@@ -159,16 +199,30 @@ class MainWindow(QMainWindow):
         self.tabifyDockWidget(warp, self._add_dock("map", "Map", self.map_panel, right))
         self.setTabPosition(right, QTabWidget.TabPosition.North)
         landmarks.raise_()
-        penalty = self._add_dock(
-            "penalty", "Warping penalty", self.panel, Qt.DockWidgetArea.BottomDockWidgetArea
+        penalty = QWidget()
+        rows = QVBoxLayout(penalty)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(0)
+        rows.addWidget(self.snapshot_strip)
+        rows.addWidget(self.panel, 1)
+        self._penalty_dock = self._add_dock(
+            "penalty", "Warping penalty", penalty, Qt.DockWidgetArea.BottomDockWidgetArea
         )
         # The table keeps the whole height of the right edge.
         self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
         self.resizeDocks([landmarks], [430], Qt.Orientation.Horizontal)
-        self.resizeDocks([penalty], [90], Qt.Orientation.Vertical)
+        self._fit_penalty_dock()
         self._make_menus()
         self._make_toolbar()
         self._make_status_bar()
+
+    def _fit_penalty_dock(self) -> None:
+        """Give the penalty no more height than it needs: the rest is the bones'."""
+        dock = self._penalty_dock
+        # What has just appeared or gone counts now, not only at the next turn of the event loop.
+        for widget in (self.panel, dock.widget(), dock):
+            widget.layout().activate()
+        self.resizeDocks([dock], [1], Qt.Orientation.Vertical)
 
     def _add_dock(
         self, key: str, title: str, widget: QWidget, area: Qt.DockWidgetArea
@@ -210,15 +264,8 @@ class MainWindow(QMainWindow):
     def _make_status_bar(self) -> None:
         self.hint = QLabel()
         self.statusBar().addWidget(self.hint, 1)
-        self.progress = QProgressBar()
-        self.progress.setRange(0, 100)
-        self.progress.setFixedWidth(220)
-        self.progress.hide()
-        self.cancel = QPushButton("Cancel")
-        self.cancel.setFlat(True)
-        self.cancel.hide()
-        self.statusBar().addPermanentWidget(self.progress)
-        self.statusBar().addPermanentWidget(self.cancel)
+        progress = JobProgress(self.statusBar(), (self.jobs, self.stepped))
+        self.progress, self.cancel = progress.bar, progress.cancel
 
     # Wiring
 
@@ -229,8 +276,9 @@ class MainWindow(QMainWindow):
             "open_source": lambda: documents.ask_and_open_mesh(Side.SOURCE),
             "open_destination": lambda: documents.ask_and_open_mesh(Side.DESTINATION),
             "open_sample": self.open_sample,
-            "save": documents.save,
-            "save_as": documents.save_as,
+            "save": self.saving.save,
+            "save_as": self.saving.save_as,
+            "restore": self.recovery.offer_again,
             "import_source": lambda: documents.ask_and_import_landmarks(Side.SOURCE),
             "import_destination": lambda: documents.ask_and_import_landmarks(Side.DESTINATION),
             "import_pairs": lambda: documents.ask_and_import_landmarks(None),
@@ -249,7 +297,13 @@ class MainWindow(QMainWindow):
             "set_nudge": self.guidance.ask_nudge,
             "set_pattern": self.guidance.ask_pattern,
             "load_template": self.guidance.load_template,
-            "export_passengers": self.exports.export_passengers,
+            "export_passengers": lambda: self.exports.export_warped(passengers=True),
+            "export_warped": lambda: self.exports.export_warped(passengers=False),
+            "export_coefficients": self.exports.export_coefficients,
+            "export_script": self.exports.export_script,
+            "export_picture": self._pictures.ask_for_picture,
+            "export_animation": self._pictures.ask_for_animation,
+            "warp_files": self._file_warping.ask_and_warp,
             "shortcuts": self.shortcuts.toggle,
             "select_none": editor.select,
             "about": lambda: self._dialogs.tell("About pinwarp", ABOUT),
@@ -262,6 +316,8 @@ class MainWindow(QMainWindow):
         actions["overlay"].toggled.connect(lambda on: editor.look(overlay=on))
         actions["lock"].toggled.connect(lambda on: editor.look(locked=on))
         actions["guide"].toggled.connect(self.guidance.switch)
+        self.snapshot_strip.height_changed.connect(self._fit_penalty_dock)
+        actions["show_curve"].toggled.connect(self._fit_penalty_dock)
         self.presenter.requests.refused.connect(self._say)
         self.guidance.said.connect(self._say)
         self.maps.refused.connect(self._say)
@@ -273,10 +329,6 @@ class MainWindow(QMainWindow):
             viewport.files_dropped.connect(
                 lambda paths, side=side: documents.open_files(side, paths)
             )
-        self.jobs.started.connect(self._on_job_started)
-        self.jobs.progressed.connect(self._on_job_progressed)
-        self.jobs.ended.connect(self._on_job_ended)
-        self.cancel.clicked.connect(self.jobs.cancel)
         self._tasks.said.connect(self._say)
         editor.session_changed.connect(self._on_session)
         editor.selection_changed.connect(self._on_session)
@@ -286,7 +338,7 @@ class MainWindow(QMainWindow):
 
     def open_sample(self) -> None:
         """Open the sample bones as a new session, asking about unsaved work first."""
-        if self.documents.may_lose_changes():
+        if self.saving.may_lose_changes():
             self.documents.open_session(sample_session(), as_new=True)
 
     def _say(self, text: str) -> None:
@@ -305,14 +357,14 @@ class MainWindow(QMainWindow):
             self._recent_menu.addAction("Clear").triggered.connect(self._recent.clear)
 
     def _open_recent(self, path: Path) -> None:
-        if self.documents.may_lose_changes():
+        if self.saving.may_lose_changes():
             self.documents.open_session(path)
 
     # What changed
 
     def _on_session(self, _changed: object = None) -> None:
         editor, actions = self.editor, self.actions_by_key
-        self.setWindowTitle(f"{self.documents.name}[*] – pinwarp")
+        self.setWindowTitle(f"{session_name(self.editor.path)}[*] – pinwarp")
         self.setWindowModified(editor.is_dirty)
         for key, verb, label in (
             ("undo", "&Undo", editor.undo_label),
@@ -327,10 +379,13 @@ class MainWindow(QMainWindow):
         for key in ("delete_side", "delete_landmark", "select_none"):
             actions[key].setEnabled(has_selection)
         session = editor.session
-        actions["export_mesh"].setEnabled(
-            session.mesh(Side.SOURCE) is not None and bool(session.pairs)
-        )
-        actions["export_report"].setEnabled(bool(session.pairs))
+        has_mesh = {side: session.mesh(side) is not None for side in Side}
+        for key in ("export_mesh", "export_script"):
+            actions[key].setEnabled(has_mesh[Side.SOURCE] and bool(session.pairs))
+        for key in ("export_report", "export_warped", "export_coefficients", "warp_files"):
+            actions[key].setEnabled(bool(session.pairs))
+        actions["export_picture"].setEnabled(any(has_mesh.values()))
+        actions["export_animation"].setEnabled(any(has_mesh.values()))
         self.guidance.show()
 
     def _on_view(self, _changed: object = None) -> None:
@@ -342,27 +397,12 @@ class MainWindow(QMainWindow):
         self.opacity.setValue(round(getattr(view, self.maps.opacity_key) * 100))
         self.guidance.show()
 
-    # Slow jobs
-
-    def _on_job_started(self, title: str) -> None:
-        self.progress.setFormat(title)
-        self.progress.setValue(0)
-        self.progress.show()
-        self.cancel.show()
-
-    def _on_job_progressed(self, share: float, stage: str) -> None:
-        self.progress.setValue(round(100 * share))
-        self.progress.setFormat(f"{stage} – %p%")
-
-    def _on_job_ended(self) -> None:
-        self.progress.hide()
-        self.cancel.hide()
-
     @property
     def is_settled(self) -> bool:
         """Whether everything asked for is done and shown."""
-        parts = (self.presenter, self.quality, self.grid, self.maps)
-        return self.jobs.is_idle and all(part.is_settled for part in parts)
+        parts = (self.presenter, self.quality, self.tuning, self.grid, self.maps)
+        idle = self.jobs.is_idle and self.stepped.is_idle
+        return idle and all(part.is_settled for part in parts)
 
     # The end
 
@@ -371,19 +411,24 @@ class MainWindow(QMainWindow):
             stored = self._settings.value(key)
             if isinstance(stored, QByteArray):
                 restore(stored)
+        # Snapshots that stood there are not remembered.
+        self._fit_penalty_dock()
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Ask about unsaved work, then let go of workers and graphics in the right order."""
-        if not self.documents.may_lose_changes():
+        if not self.saving.may_lose_changes():
             event.ignore()
             return
         self._settings.setValue("geometry", self.saveGeometry())
         self._settings.setValue("layout", self.saveState())
+        self.recovery.shut_down()
         self.jobs.shut_down()
+        self.stepped.shut_down()
         self.grid.shut_down()
         self.warp_presenter.shut_down()
         self.findings_presenter.shut_down()
         self.quality.quality_changed.disconnect(self.presenter.show_quality)
+        self.tuning.shut_down()
         self.quality.shut_down()
         self.maps.shut_down()
         self.presenter.shut_down()

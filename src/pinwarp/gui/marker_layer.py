@@ -6,6 +6,7 @@ look the same on every graphics driver. What lies behind the surface is painted 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -52,7 +53,12 @@ class MarkerLayer(QWidget):
         self.unit = ""
         self.radius = RADIUS
         self.painted_for: object = None
+        # For a picture: signs in so many pixels, places seen from its middle, with a frame or not.
+        self.pixels_per_pixel = 1.0
+        self.offset = (0.0, 0.0)
+        self.framed = True
         self._markers: tuple[Marker, ...] = ()
+        self._badge = ""
         # Which places the bone hides, as long as the camera stands still.
         self._hidden: dict[Position, bool] = {}
         self._hidden_for: object = None
@@ -70,6 +76,17 @@ class MarkerLayer(QWidget):
         self.update()
 
     @property
+    def badge(self) -> str:
+        """What is said on a plate in the corner."""
+        return self._badge
+
+    def show_badge(self, words: str) -> None:
+        """Say that something unusual is shown; empty words take the plate away."""
+        if words != self._badge:
+            self._badge = words
+            self.update()
+
+    @property
     def suggestion(self) -> Suggestion | None:
         """The place that is marked for the next landmark."""
         return self._suggestion
@@ -84,7 +101,10 @@ class MarkerLayer(QWidget):
         """Return where the landmarks are on the screen: (n, 2) logical pixels."""
         if not self._markers:
             return np.zeros((0, 2))
-        return self._canvas.project(np.array([marker.position for marker in self._markers]))
+        return self._project([marker.position for marker in self._markers])
+
+    def _project(self, positions: Sequence[Position]) -> NDArray:
+        return self._canvas.project(np.array(positions)) + self.offset
 
     def hidden(self) -> NDArray[np.bool_]:
         """Return which landmarks lie behind the surface as the camera stands now."""
@@ -112,8 +132,9 @@ class MarkerLayer(QWidget):
         self.painted_for = self._canvas.view_key()
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        self._paint_title(painter)
-        if self._canvas.bone is not None:
+        if self.framed:
+            self._paint_title(painter)
+        if self.framed and self._canvas.bone is not None:
             length = self._canvas.unit_per_pixel
             paint_scale_bar(painter, QRectF(self.rect()), length, self.unit)
         if self.hint:
@@ -125,6 +146,8 @@ class MarkerLayer(QWidget):
         places, hidden = self.places(), self.hidden()
         reached_from_right = self._paint_arrows(painter, hidden)
         self._paint_markers(painter, places, hidden, reached_from_right)
+        if self._badge:
+            self._paint_badge(painter)
         painter.end()
 
     def _paint_title(self, painter: QPainter) -> None:
@@ -150,6 +173,19 @@ class MarkerLayer(QWidget):
         painter.drawRoundedRect(plate, 10, 10)
         painter.setPen(QColor(theme.INK))
         painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, self.hint)
+
+    def _paint_badge(self, painter: QPainter) -> None:
+        metrics, margin = painter.fontMetrics(), 10
+        words = metrics.elidedText(
+            self._badge, Qt.TextElideMode.ElideRight, self.width() - 2 * margin - 20
+        )
+        plate = QRectF(0, margin, metrics.horizontalAdvance(words) + 20, metrics.height() + 8)
+        plate.moveRight(self.width() - margin)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(theme.INK))
+        painter.drawRoundedRect(plate, 6, 6)
+        painter.setPen(QColor(theme.PAPER))
+        painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, words)
 
     def _paint_ghost(self, painter: QPainter, ghost: Ghost) -> None:
         """Paint a dashed ring where a landmark is expected, in a disc as wide as the doubt."""
@@ -196,8 +232,8 @@ class MarkerLayer(QWidget):
             return from_right
         selected = {marker.name for marker in self._markers if marker.selected}
         faint = {marker.name for marker, out in zip(self._markers, hidden, strict=True) if out}
-        starts = self._canvas.project(np.array([arrow.start for arrow in self.arrows]))
-        ends = self._canvas.project(np.array([arrow.end for arrow in self.arrows]))
+        starts = self._project([arrow.start for arrow in self.arrows])
+        ends = self._project([arrow.end for arrow in self.arrows])
         for arrow, start, end in zip(self.arrows, starts.tolist(), ends.tolist(), strict=True):
             chosen = arrow.name in selected
             # What is asked about is seen even behind the bone.
@@ -221,7 +257,7 @@ class MarkerLayer(QWidget):
         hidden: NDArray[np.bool_],
         leftwards: set[str],
     ) -> None:
-        ratio = self.devicePixelRatioF()
+        ratio = self.devicePixelRatioF() * self.pixels_per_pixel
         # Hidden ones first, selected ones last, so that what matters lies on top.
         order = sorted(
             range(len(self._markers)),

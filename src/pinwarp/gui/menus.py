@@ -11,8 +11,8 @@ SEPARATOR = "-"
 # A key that begins with @ is a menu inside the menu.
 MENUS = {
     "&File": (
-        "open_source open_destination - open_session @recent open_sample - save save_as - "
-        "@import @export export_mesh export_report - quit"
+        "open_source open_destination - open_session @recent restore open_sample - save save_as - "
+        "@import @export export_mesh export_report warp_files - quit"
     ),
     "&Edit": (
         "undo redo - copy paste - rename rename_many note - "
@@ -23,10 +23,13 @@ MENUS = {
         "accept_ghost place_suggested next_incomplete next_finding - "
         "load_template guide set_pattern - snap set_nudge lock"
     ),
-    "&Warp": "@components play_blend - copy_figures",
+    "&Warp": (
+        "take_suggested swap_penalty - snapshot sweep clear_snapshots - "
+        "@components play_blend - copy_figures"
+    ),
     "&View": (
         "overlay arrows @maps @grid - fit focus @sides @cameras - section wireframe - "
-        "markers_larger markers_smaller - show_coordinates -"
+        "markers_larger markers_smaller - show_coordinates show_curve -"
     ),
     "&Help": "shortcuts - about_penalty about_quality about",
 }
@@ -53,8 +56,9 @@ SUBMENUS = {
         "map_uncertainty - map_next",
     ),
     "@export": (
-        "E&xport Landmarks",
-        "export_source export_destination export_pairs export_passengers",
+        "E&xport",
+        "export_picture export_animation - export_source export_destination "
+        "export_pairs export_warped export_passengers - export_coefficients export_script",
     ),
 }
 TOOLBAR = (

@@ -3,94 +3,57 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
-from qtpy.QtCore import QRectF, Qt, Signal
-from qtpy.QtGui import QColor, QPainter, QPaintEvent, QPen
+from qtpy.QtCore import Qt, Signal
+from qtpy.QtGui import QAction
 from qtpy.QtWidgets import (
     QComboBox,
     QGridLayout,
     QHBoxLayout,
     QLabel,
     QLineEdit,
+    QMenu,
     QPushButton,
-    QSizePolicy,
-    QSlider,
-    QStyle,
-    QStyleOptionSlider,
-    QVBoxLayout,
+    QToolButton,
     QWidget,
 )
 
 from pinwarp.core.factor import SourceFactor
-from pinwarp.core.findings import FindingKind
+from pinwarp.core.quality import PenaltyCurve
 from pinwarp.core.spline import PenaltyConvention
 from pinwarp.gui import theme
+from pinwarp.gui.lengths import format_length
+from pinwarp.gui.penalty_figures import (
+    Notes,
+    PenaltyFigures,
+    is_nearly_planar,
+    tidy_residual,
+    warnings_of,
+)
+from pinwarp.gui.penalty_plot import PenaltyPlot, Plotted
+from pinwarp.gui.penalty_slider import STEPS, PenaltySlider
 from pinwarp.session.edits import UNITS
+from pinwarp.session.quality import LEAST_PAIRS, Quality, penalty_advice
 from pinwarp.session.results import WarpResult
 from pinwarp.session.session import Session
-
-STEPS = 1000
 
 _CONVENTIONS = {
     PenaltyConvention.REGULARISING: "Regularising",
     PenaltyConvention.OPYNSIM: "OPynSim (published)",
 }
-
-
-def format_length(value: float, unit: str) -> str:
-    """Return a length with a sensible number of digits and its unit.
-
-    Examples
-    --------
-    >>> format_length(2.40047, "mm"), format_length(float("inf"), "mm")
-    ('2.4 mm', 'affine')
-    """
-    if math.isinf(value):
-        return "affine"
-    return f"{value:.4g} {unit}"
-
-
-class PenaltySlider(QSlider):
-    """A slider that can show where the poles of the OPYNSIM convention lie."""
-
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(Qt.Orientation.Horizontal, parent)
-        self.setRange(0, STEPS)
-        self.setPageStep(STEPS // 20)
-        self._poles: tuple[float, ...] = ()
-
-    @property
-    def poles(self) -> tuple[float, ...]:
-        """Where the poles are, as shares of the slider's length."""
-        return self._poles
-
-    def set_poles(self, shares: tuple[float, ...]) -> None:
-        """Mark poles at these shares of the slider's length."""
-        if shares != self._poles:
-            self._poles = shares
-            self.update()
-
-    def paintEvent(self, event: QPaintEvent) -> None:
-        """Paint the slider, and a tick above the groove for each pole."""
-        super().paintEvent(event)
-        if not self._poles:
-            return
-        option = QStyleOptionSlider()
-        self.initStyleOption(option)
-        handle = self.style().subControlRect(
-            QStyle.ComplexControl.CC_Slider, option, QStyle.SubControl.SC_SliderHandle, self
-        )
-        span = self.width() - handle.width()
-        painter = QPainter(self)
-        painter.setPen(QPen(QColor(theme.WARNING_COLOUR), 1.5))
-        for share in self._poles:
-            x = handle.width() / 2 + share * span
-            painter.drawLine(QRectF(x, 0, 0, 7).topLeft(), QRectF(x, 0, 0, 7).bottomLeft())
-        painter.end()
+_NO_CURVE = "From five pairs on, leave-one-out error and residual are drawn here."
+_OTHER_CONVENTION = "The curve and its suggestion are of the regularising convention."
 
 
 class PenaltyPanel(QWidget):
-    """Shows the session's penalty and asks for another."""
+    """Shows the session's penalty and asks for another.
+
+    Parameters
+    ----------
+    actions
+        The window's actions by key; some have a button here.
+    """
 
     penalty_previewed = Signal(float)
     penalty_requested = Signal(float)
@@ -98,46 +61,46 @@ class PenaltyPanel(QWidget):
     planar_requested = Signal(bool)
     unit_requested = Signal(str)
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(self, actions: Mapping[str, QAction], parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._factor: SourceFactor | None = None
         self._result: WarpResult | None = None
+        self._quality: Quality | None = None
         self._session = Session()
         self._sliding = False
 
         self.slider = PenaltySlider()
         self.slider.setAccessibleName("Warping penalty")
-        self.slider.setMinimumWidth(240)
+        self.slider.setMinimumWidth(160)
         self.slider.setToolTip(
             "How much the warp is smoothed: left meets every landmark, right is the affine fit"
         )
+        self.plot = PenaltyPlot(self.slider, self)
         self.value = QLineEdit()
         self.value.setAlignment(Qt.AlignmentFlag.AlignRight)
-        self.value.setFixedWidth(self.fontMetrics().horizontalAdvance("0.00000000"))
+        self.value.setFixedWidth(self.fontMetrics().horizontalAdvance("0.00000000") + 14)
         self.value.setToolTip("The exact penalty, a length in mesh units, or “affine”")
         self.unit = QComboBox()
         self.unit.setToolTip("The unit of the meshes: shown beside numbers, nothing is converted")
-        self.flexibility = self._figure("Flexibility", "Share of the non-affine freedom left")
-        self.residual = self._figure("RMS residual", "How far the warped landmarks miss theirs")
-        self.pairs = self._figure("Pairs", "Landmarks placed on both meshes that take part")
+        self.figures = PenaltyFigures()
         self.convention = QComboBox()
         for convention, text in _CONVENTIONS.items():
             self.convention.addItem(text, convention)
         self.convention.setToolTip(
             "Regularising is right for every new warp; OPynSim reproduces results made elsewhere"
         )
-        self.warning = QLabel()
-        self.warning.setWordWrap(True)
-        self.warning.setStyleSheet(f"color: {theme.WARNING_COLOUR};")
-        self.warning.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
+        self.suggested = QPushButton()
+        self.warning = Notes()
         self.planar = QPushButton("Treat as planar")
         self.planar.setCheckable(True)
         self.planar.setToolTip("Keep the warp tame across the plane that the landmarks lie in")
-        self._lay_out()
+        self._lay_out(actions)
 
         self.slider.sliderPressed.connect(self._on_pressed)
         self.slider.valueChanged.connect(self._on_slid)
         self.slider.sliderReleased.connect(self._on_released)
+        self.plot.penalty_requested.connect(self.penalty_requested)
+        self.suggested.clicked.connect(self.take_suggested)
         self.value.editingFinished.connect(self._on_typed)
         self.unit.textActivated.connect(self.unit_requested)
         self.convention.activated.connect(self._on_convention)
@@ -145,56 +108,63 @@ class PenaltyPanel(QWidget):
         self.show_session(self._session)
         self.show_result(None)
 
-    def _figure(self, title: str, tip: str) -> QLabel:
-        label = QLabel()
-        label.setTextFormat(Qt.TextFormat.RichText)
-        label.setToolTip(tip)
-        label.setProperty("title", title)
-        label.setMinimumWidth(self.fontMetrics().horizontalAdvance(f"{title}  "))
-        return label
-
-    def _lay_out(self) -> None:
-        ends = QHBoxLayout()
-        for text in ("Interpolates", "Affine"):
+    def _lay_out(self, actions: Mapping[str, QAction]) -> None:
+        slider = QHBoxLayout()
+        slider.setSpacing(theme.SPACE)
+        # What stands at the curves' ends takes more room than the ends of the slider.
+        for text, reserved in (("Interpolates", "Interpolates"), ("Affine", "Leave-one-out")):
             label = QLabel(text)
             label.setEnabled(False)
-            ends.addWidget(label)
-            if text == "Interpolates":
-                ends.addStretch()
-        slider_and_ends = QVBoxLayout()
-        slider_and_ends.setSpacing(0)
-        slider_and_ends.addWidget(self.slider)
-        slider_and_ends.addLayout(ends)
-
-        row = QHBoxLayout()
-        row.setSpacing(2 * theme.SPACE)
-        row.addLayout(slider_and_ends, 1)
+            label.setFixedWidth(self.fontMetrics().horizontalAdvance(reserved) + 4)
+            slider.addWidget(label)
+        slider.insertWidget(1, self.slider, 1)
         exact = QHBoxLayout()
         exact.setSpacing(4)
         exact.addWidget(self.value)
         exact.addWidget(self.unit)
-        row.addLayout(exact)
-        for figure in (self.flexibility, self.residual, self.pairs):
-            row.addWidget(figure)
-        row.addWidget(self.convention)
-
+        exact.addSpacing(theme.SPACE)
+        exact.addWidget(self.convention, 1)
+        buttons = QHBoxLayout()
+        buttons.setSpacing(4)
+        buttons.addWidget(self.suggested, 1)
+        buttons.addWidget(_tool_button(actions["show_curve"]))
+        # Kept: Python must not let go of a menu that Qt still shows.
+        self._snapshot_menu = QMenu(self)
+        self._snapshot_menu.addActions([actions[x] for x in ("sweep", "clear_snapshots")])
+        snapshot = _tool_button(actions["snapshot"])
+        snapshot.setMenu(self._snapshot_menu)
+        snapshot.setPopupMode(QToolButton.ToolButtonPopupMode.MenuButtonPopup)
+        buttons.addWidget(snapshot)
         below = QHBoxLayout()
         below.addWidget(self.warning, 1)
         below.addWidget(self.planar)
-        grid = QGridLayout(self)
-        grid.setContentsMargins(12, 6, 12, 8)
+        self._grid = grid = QGridLayout(self)
+        grid.setContentsMargins(12, 4, 12, 6)
+        grid.setHorizontalSpacing(2 * theme.SPACE)
         grid.setVerticalSpacing(4)
-        grid.addLayout(row, 0, 0)
-        grid.addLayout(below, 1, 0)
+        grid.setColumnStretch(0, 1)
+        grid.addWidget(self.plot, 0, 0, 2, 1)
+        grid.addLayout(exact, 0, 1)
+        grid.addWidget(self.figures, 1, 1)
+        grid.addLayout(slider, 2, 0)
+        grid.addLayout(buttons, 2, 1)
+        grid.addLayout(below, 3, 0, 1, 2)
+
+    def show_plot(self, shown: bool) -> None:
+        """Show the curve above the slider, or make room for the bones."""
+        self.plot.setVisible(shown)
+        # Without the curve the figures take its place.
+        self._grid.addWidget(self.figures, *((1, 1) if shown else (0, 0)))
 
     # What is shown
 
     def show_session(self, session: Session) -> None:
         """Show the penalty of a session."""
-        unit_changed = session.unit != self._session.unit
-        self._session = session
-        if unit_changed:
+        before, self._session = self._session, session
+        if session.unit != before.unit:
             self.show_result(self._result)
+        if (session.unit, session.convention) != (before.unit, before.convention):
+            self._show_curve()
         if not self.value.hasFocus() or not self.value.isModified():
             penalty = session.warping_penalty
             self.value.setText("affine" if math.isinf(penalty) else f"{penalty:.6g}")
@@ -212,59 +182,97 @@ class PenaltyPanel(QWidget):
 
     def show_result(self, result: WarpResult | None) -> None:
         """Show what the penalty does."""
+        self.figures.show_result(result, self._session.unit)
         if result is not None and result.factor is not None and not result.factor.has_modes:
             # While a source landmark moves, the penalty's scale is not known: it will be at rest.
-            self._show_residual(result)
             return
         self._result = result
         self._factor = result.factor if result is not None else None
         has_modes = self._factor is not None and len(self._factor.poles) > 0
         self.slider.setEnabled(has_modes)
         self.value.setEnabled(has_modes)
-        flexibility = result.flexibility if result is not None else None
-        self._set_figure(self.flexibility, "–" if flexibility is None else f"{flexibility:.0%}")
-        self._show_residual(result)
-        self._show_warnings(result, has_modes)
+        self.figures.show_flexibility(result.flexibility if result is not None else None)
+        self._show_words()
+        self.planar.setVisible(is_nearly_planar(result) or self._session.planar)
+        self.planar.setChecked(self._session.planar)
+        opynsim = self._session.convention is PenaltyConvention.OPYNSIM
+        poles = self._factor.poles.tolist() if self._factor is not None and opynsim else []
+        self.slider.set_poles(tuple(self._share_of(pole) for pole in poles))
+        if not has_modes:
+            # What is drawn was of pairs that are gone.
+            self._quality = None
+            self._show_curve()
         self._place_handle()
 
-    def _show_residual(self, result: WarpResult | None) -> None:
-        rms = result.rms_residual if result is not None else None
-        count = len(result.inputs.source) if result is not None else 0
-        text = "–" if rms is None else format_length(_tidy(rms, result), self._session.unit)
-        self._set_figure(self.residual, text)
-        self._set_figure(self.pairs, str(count))
+    def show_quality(self, quality: Quality | None) -> None:
+        """Show the curve that the pairs make, and what it suggests."""
+        self._quality = quality
+        self._show_curve()
+        self._show_words()
+        self._show_present()
 
-    def _set_figure(self, label: QLabel, text: str) -> None:
-        title = label.property("title")
-        label.setText(f"<small>{title}</small><br><b>{text}</b>")
+    @property
+    def _curve(self) -> PenaltyCurve | None:
+        return self._quality.curve if self._quality is not None else None
 
-    def _show_warnings(self, result: WarpResult | None, has_modes: bool) -> None:
-        notes: list[str] = []
-        nearly_planar = False
-        if result is not None and result.problem:
-            notes.append(result.problem)
-        elif result is not None and result.spline is not None:
-            names = [pair.name for pair in self._session.pairs]
-            for finding in result.spline.findings:
-                nearly_planar |= finding.kind is FindingKind.NEARLY_PLANAR
-                if all(row < len(names) for row in finding.rows):
-                    notes.append(finding.describe(names, self._session.unit))
-            if not has_modes:
-                notes.append("The penalty acts from five pairs on.")
-        opynsim = self._session.convention is PenaltyConvention.OPYNSIM
-        if opynsim and has_modes and not notes:
-            notes.append(
-                "OPynSim's published equation has poles (the ticks): the warp overshoots before "
-                "each and flips behind it."
-            )
-        self.warning.setText("  ".join(notes))
-        self.planar.setVisible(nearly_planar or self._session.planar)
-        self.planar.setChecked(self._session.planar)
-        self.slider.set_poles(
-            tuple(self._share_of(float(pole)) for pole in self._factor.poles)
-            if opynsim and self._factor is not None and has_modes
-            else ()
-        )
+    def _show_curve(self) -> None:
+        curve, factor, unit = self._curve, self._factor, self._session.unit
+        if curve is None or factor is None or self._quality is None:
+            count = len(self._result.inputs.source) if self._result is not None else 0
+            self.plot.show_curve(None, _NO_CURVE if count < LEAST_PAIRS else "")
+        else:
+            regular = self._session.convention is PenaltyConvention.REGULARISING
+            title = [f"RMS over {len(self._quality.inputs.source)} pairs"]
+            title += [] if regular else ["by the regularising convention"]
+            title += [] if self._quality.inputs.is_whole else ["of the whole warp"]
+            self.plot.show_curve(Plotted(curve, factor, unit, regular, ", ".join(title)))
+        self._show_suggestion()
+
+    def _show_words(self) -> None:
+        curve = self._curve
+        advice = penalty_advice(curve) if curve is not None else ""
+        if curve is not None and self._session.convention is PenaltyConvention.OPYNSIM:
+            advice = ""
+        self.warning.show_words(warnings_of(self._session, self._result), advice)
+
+    def _show_suggestion(self) -> None:
+        curve, penalty = self._curve, self.suggestion
+        there = penalty is not None and penalty == self._session.warping_penalty
+        self.suggested.setEnabled(penalty is not None and not there)
+        words, tip = "No penalty suggested", penalty_advice(curve) if curve is not None else ""
+        if penalty is not None:
+            length = format_length(penalty, self._session.unit, 3)
+            words = f"At suggested: {length}" if there else f"Use suggested: {length}"
+            tip = "The penalty with the least leave-one-out error (T)"
+        elif curve is not None and curve.suggested is not None:
+            tip = _OTHER_CONVENTION
+        self.suggested.setText(words)
+        self.suggested.setToolTip(tip)
+
+    def _show_present(self) -> None:
+        """Mark the penalty on the curve, with the figures that it has there."""
+        session = self._session
+        share = self._share_of(session.warping_penalty)
+        figures = self._figures_at(session.warping_penalty, share)
+        self.figures.show_left_out(figures[0] if figures else math.nan, session.unit)
+        has_place = self._factor is not None and len(self._factor.poles) > 0
+        self.plot.show_present(share if has_place else None, figures)
+        self._show_suggestion()
+
+    def _figures_at(self, penalty: float, share: float) -> tuple[float, float] | None:
+        """Return leave-one-out error and residual: as solved, else as the curve has them."""
+        quality, result = self._quality, self._result
+        if quality is None or quality.curve is None or result is None:
+            return None
+        if self._session.convention is PenaltyConvention.OPYNSIM and penalty > 0:
+            return None
+        left_out, residual = quality.curve.at(1.0 - share)
+        exact = quality.inputs.penalty == penalty and not quality.curve.is_affine
+        if quality.left_out is not None and exact:
+            left_out = quality.left_out.rms
+        if result.inputs.is_whole and result.inputs.penalty == penalty:
+            residual = tidy_residual(result) or 0.0
+        return left_out, residual
 
     # The slider's scale is flexibility: it has no unit and suits every set of landmarks
 
@@ -274,6 +282,7 @@ class PenaltyPanel(QWidget):
         return 1.0 - self._factor.flexibility(penalty)
 
     def _place_handle(self) -> None:
+        self._show_present()
         if self._sliding:
             return
         self.slider.blockSignals(True)
@@ -286,6 +295,18 @@ class PenaltyPanel(QWidget):
         return self._factor.penalty_at(1.0 - self.slider.value() / STEPS)
 
     # What the user does
+
+    @property
+    def suggestion(self) -> float | None:
+        """The penalty that may be taken in one go, if the pairs suggest one."""
+        if self._curve is None or self._session.convention is not PenaltyConvention.REGULARISING:
+            return None
+        return self._curve.suggested
+
+    def take_suggested(self) -> None:
+        """Ask for the suggested penalty."""
+        if self.suggestion is not None:
+            self.penalty_requested.emit(self.suggestion)
 
     def _on_pressed(self) -> None:
         self._sliding = True
@@ -312,7 +333,7 @@ class PenaltyPanel(QWidget):
             valid = False
         self.value.setModified(False)
         if not valid:
-            self.warning.setText(
+            self.warning.show_words(
                 f"“{self.value.text()}” is not a penalty: type a number of 0 or more, or “affine”."
             )
             self.value.setText(f"{self._session.warping_penalty:.6g}")
@@ -324,9 +345,9 @@ class PenaltyPanel(QWidget):
         self.convention_requested.emit(PenaltyConvention(self.convention.itemData(index)))
 
 
-def _tidy(residual: float, result: WarpResult | None) -> float:
-    """Return 0 for a residual that is only rounding."""
-    if result is None or not result.inputs.destination:
-        return residual
-    size = max(abs(x) for position in result.inputs.destination for x in position)
-    return 0.0 if residual < 1e-9 * size else residual
+def _tool_button(action: QAction) -> QToolButton:
+    button = QToolButton()
+    button.setDefaultAction(action)
+    # The keyboard stays with the bones.
+    button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+    return button

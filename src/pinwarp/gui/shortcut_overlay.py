@@ -45,14 +45,7 @@ class ShortcutOverlay(QWidget):
         """Return what is listed: titles, and keys with what they do."""
         listed: list[tuple[str, Lines]] = [("Mouse", _MOUSE)]
         for title, actions in self._groups:
-            entries = [
-                (
-                    ", ".join(key.toString() for key in action.shortcuts()),
-                    action.text().replace("&", "").rstrip("…"),
-                )
-                for action in actions
-                if action.shortcuts()
-            ]
+            entries = [entry for entry in map(_entry, actions) if entry[0]]
             if entries:
                 listed.append((title, entries))
         return listed
@@ -94,12 +87,15 @@ class ShortcutOverlay(QWidget):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.fillRect(self.rect(), QColor(20, 24, 30, 225))
         listed = self.lines()
-        line = painter.fontMetrics().height() + 5
-        heights = [(len(entries) + 2) * line for _, entries in listed]
-        columns = _in_columns(heights, _COLUMNS)
+        rows = [len(entries) + 2 for _, entries in listed]
+        columns = _in_columns(rows, _COLUMNS)
+        longest = max(sum(rows[i] for i in column) for column in columns)
+        # A low window moves the lines together.
+        line = min(painter.fontMetrics().height() + 5, (self.height() - 32) // longest)
+        heights = [count * line for count in rows]
         width = min(1000, self.width() - 60)
         tallest = max(sum(heights[i] for i in column) for column in columns)
-        top = max(24.0, (self.height() - tallest) / 2)
+        top = max(16.0, (self.height() - tallest) / 2)
         left = (self.width() - width) / 2
         for number, column in enumerate(columns):
             at = QPointF(left + number * width / _COLUMNS, top)
@@ -128,6 +124,13 @@ class ShortcutOverlay(QWidget):
             painter.drawText(
                 QRectF(at.x() + split, y, width - split, line), Qt.AlignmentFlag.AlignVCenter, words
             )
+
+
+def _entry(action: QAction) -> tuple[str, str]:
+    """Return the keys of an action and its words; a key that is held stands behind a tab."""
+    words, _, held = action.text().replace("&", "").partition("\t")
+    keys = [key.toString() for key in action.shortcuts()] + [held] * bool(held)
+    return ", ".join(keys), words.rstrip("…")
 
 
 def _in_columns(heights: Sequence[float], count: int) -> list[list[int]]:

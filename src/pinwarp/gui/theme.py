@@ -74,11 +74,21 @@ def text_colour() -> QColor:
     return QGuiApplication.palette().color(QPalette.ColorRole.WindowText)
 
 
-def quiet_text_colour() -> QColor:
-    """Return the colour of text on the window that may be overlooked."""
-    return text_colour() if is_dark() else QColor(QUIET_INK)
-
-
 def selected_text_colour() -> QColor:
     """Return the colour of text on selected rows."""
     return QGuiApplication.palette().color(QPalette.ColorRole.HighlightedText)
+
+
+def quiet_text_colour() -> QColor:
+    """Return the colour of text on the window that need not be read."""
+    return QColor("#a4abb5") if is_dark() else QColor(QUIET_INK)
+
+
+def leave_one_out_colour() -> QColor:
+    """Return the colour of leave-one-out errors in plots."""
+    return QColor("#56B4E9") if is_dark() else QColor("#0072B2")
+
+
+def residual_colour() -> QColor:
+    """Return the colour of residuals in plots."""
+    return quiet_text_colour()

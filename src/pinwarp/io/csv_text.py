@@ -46,7 +46,7 @@ class Row:
         return not self.problem and not any(cell.strip() for cell in self.cells)
 
 
-def read_text(path: str | Path, what: str) -> str:
+def read_text(path: str | Path, what: str, largest: int = LARGEST) -> str:
     r"""Read a text file as UTF-8, UTF-16 with its mark, or else as Windows-1252.
 
     Parameters
@@ -55,6 +55,8 @@ def read_text(path: str | Path, what: str) -> str:
         The file.
     what
         What it should be, for the messages.
+    largest
+        Refuse files of more bytes than this.
 
     Returns
     -------
@@ -64,7 +66,7 @@ def read_text(path: str | Path, what: str) -> str:
     Raises
     ------
     FileFormatError
-        When it is missing, empty, larger than 64 MB or not readable.
+        When it is missing, empty, too large or not readable.
 
     Examples
     --------
@@ -75,7 +77,7 @@ def read_text(path: str | Path, what: str) -> str:
     ...     read_text(path, "landmark")
     'name,x,y,z\r\n'
     """
-    data = read_content(path, what=what, largest=LARGEST).data
+    data = read_content(path, what=what, largest=largest).data
     # Spreadsheets save "Unicode text" as UTF-16, and plain CSV in the old Windows encoding.
     wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
     for encoding in ("utf-16", "cp1252") if wide else ("utf-8-sig", "cp1252"):
@@ -147,7 +149,8 @@ def rows_of(lines: Sequence[str], separator: str, first_line: int = 1) -> Iterat
     start = 0
     while start < len(lines):
         # Strict: a quote that is never closed would swallow every row below it in silence.
-        reader = csv.reader(lines[start:], delimiter=separator, strict=True)
+        rest = (lines[number] for number in range(start, len(lines)))
+        reader = csv.reader(rest, delimiter=separator, strict=True)
         done = 0
         try:
             for cells in reader:
@@ -190,4 +193,4 @@ def refuse_binary(path: str | Path, text: str) -> None:
     >>> refuse_binary("a.csv", "name,x,y,z")
     """
     if "\0" in text:
-        raise FileFormatError(path, "This is not a text file. Choose a CSV file of landmarks.")
+        raise FileFormatError(path, "This is not a text file. Choose a file of landmarks.")

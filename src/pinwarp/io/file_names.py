@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 SESSION_SUFFIX = ".pinwarp.csv"
+BACKUP_SUFFIX = ".bak"
 
 
 def is_session(path: Path) -> bool:
@@ -16,3 +17,36 @@ def is_session(path: Path) -> bool:
     (True, False)
     """
     return path.name.lower().endswith(SESSION_SUFFIX)
+
+
+def session_name(path: Path | None) -> str:
+    """Return what a session is called by its file, or without one.
+
+    Examples
+    --------
+    >>> session_name(Path("/bones/left femur.pinwarp.csv")), session_name(None)
+    ('left femur', 'Untitled')
+    """
+    return path.name.removesuffix(SESSION_SUFFIX) if path is not None else "Untitled"
+
+
+def backup_of(path: Path) -> Path:
+    """Return where the previous version of a session is kept; file dialogs do not show it.
+
+    Examples
+    --------
+    >>> backup_of(Path("left.pinwarp.csv")).name
+    'left.pinwarp.csv.bak'
+    """
+    return path.with_name(path.name + BACKUP_SUFFIX)
+
+
+def is_backup(path: Path) -> bool:
+    """Say by its name whether a file is the previous version of another.
+
+    Examples
+    --------
+    >>> is_backup(Path("left.pinwarp.csv.bak")), is_backup(Path("left.pinwarp.csv"))
+    (True, False)
+    """
+    return path.name.lower().endswith(BACKUP_SUFFIX)

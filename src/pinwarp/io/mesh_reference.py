@@ -58,8 +58,8 @@ def mesh_reference(text: str, folder: Path) -> MeshReference:
     return MeshReference(where, match["sha256"], int(match["vertices"]))
 
 
-def mesh_text(mesh: MeshReference, folder: Path) -> str:
-    """Return the text of a mesh line, its path as seen from the folder of the session.
+def mesh_text(mesh: MeshReference, folder: Path | None) -> str:
+    """Return the text of a mesh line, its path as seen from a folder or, without one, absolute.
 
     Examples
     --------
@@ -67,7 +67,9 @@ def mesh_text(mesh: MeshReference, folder: Path) -> str:
     'femur.stl sha256=ab vertices=456'
     """
     where = Path(os.path.abspath(mesh.path))
-    if where.is_relative_to(folder):
+    if folder is None:
+        text = where.as_posix()
+    elif where.is_relative_to(folder):
         text = where.relative_to(folder).as_posix()
     else:
         try:

@@ -13,15 +13,18 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.io.atomic import atomic_path
 from pinwarp.io.mesh_formats.obj import read_obj, write_obj
 from pinwarp.io.mesh_formats.ply import read_ply, write_ply
-from pinwarp.io.mesh_formats.polydata import write_legacy_vtk, write_vtp
 from pinwarp.io.mesh_formats.stl import read_stl, write_stl
 from pinwarp.io.mesh_formats.surface import BrokenMeshError
 from pinwarp.io.mesh_formats.triangles import mesh_of
+from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
 from pinwarp.io.mesh_formats.vtk_legacy import read_legacy_vtk
 from pinwarp.io.mesh_formats.vtp import read_vtp
 from pinwarp.io.reading import read_content
 
 MESH_SUFFIXES = (".stl", ".ply", ".obj", ".vtp", ".vtk")
+# What has room for more than places and triangles.
+NORMALS_SUFFIXES = (".ply", ".obj", ".vtp", ".vtk")
+SCALARS_SUFFIXES = (".ply", ".vtp", ".vtk")
 
 _READERS = {
     ".stl": read_stl,
@@ -30,12 +33,27 @@ _READERS = {
     ".vtp": read_vtp,
     ".vtk": read_legacy_vtk,
 }
-_WRITERS = {
+
+
+def _write_vtp(path: Path, mesh: Mesh, extras: VertexData) -> None:
+    # VTK is loaded only for what needs it.
+    from pinwarp.io.mesh_formats.polydata import write_vtp
+
+    write_vtp(path, mesh, extras)
+
+
+def _write_legacy_vtk(path: Path, mesh: Mesh, extras: VertexData) -> None:
+    from pinwarp.io.mesh_formats.polydata import write_legacy_vtk
+
+    write_legacy_vtk(path, mesh, extras)
+
+
+_WRITERS: dict[str, Callable[[Path, Mesh, VertexData], None]] = {
     ".stl": write_stl,
     ".ply": write_ply,
     ".obj": write_obj,
-    ".vtp": write_vtp,
-    ".vtk": write_legacy_vtk,
+    ".vtp": _write_vtp,
+    ".vtk": _write_legacy_vtk,
 }
 
 
@@ -55,6 +73,13 @@ class MeshFile:
         What was changed or left out, as sentences for the user.
     mirrored
         The axes across which the mesh was mirrored after reading, such as ``"x"``.
+
+    Examples
+    --------
+    >>> from pinwarp.io.samples import assets_folder
+    >>> file = read_mesh(assets_folder() / "femur_generic.ply")
+    >>> file.path.name, len(file.mesh.vertices), file.notes
+    ('femur_generic.ply', 10000, ())
     """
 
     path: Path
@@ -122,7 +147,7 @@ def read_mesh(
     return MeshFile(content.path, mesh, content.sha256, notes)
 
 
-def write_mesh(path: str | Path, mesh: Mesh) -> None:
+def write_mesh(path: str | Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     """Write a mesh in the format of the file's suffix, all of it or nothing.
 
     Parameters
@@ -131,6 +156,9 @@ def write_mesh(path: str | Path, mesh: Mesh) -> None:
         The file. All formats but STL keep double precision; STL knows only single.
     mesh
         The mesh.
+    extras
+        Normals (PLY, OBJ, VTP, VTK) and scalars (PLY, VTP, VTK) to go with its vertices; STL has
+        room for neither.
 
     Raises
     ------
@@ -153,7 +181,7 @@ def write_mesh(path: str | Path, mesh: Mesh) -> None:
         raise _unknown_suffix(path)
     with atomic_path(path) as temporary:
         try:
-            write(temporary, mesh)
+            write(temporary, mesh, extras)
         except BrokenMeshError as error:
             raise FileFormatError(path, str(error)) from error
 

@@ -73,6 +73,35 @@ def read_content(
     return Content(place, b"".join(chunks), digest.hexdigest())
 
 
+def hash_of(path: str | Path, *, progress: Callable[[float], None] | None = None) -> str | None:
+    """Return the SHA-256 of a file in hexadecimal digits, None when it cannot be read.
+
+    Parameters
+    ----------
+    path
+        The file.
+    progress
+        Told the share that was read; what it raises ends the reading.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "a.txt").write_bytes(b"abc")
+    ...     hash_of(Path(folder, "a.txt"))[:8], hash_of(Path(folder, "b.txt"))
+    ('ba7816bf', None)
+    """
+    digest = hashlib.sha256()
+    try:
+        for chunk, share in _chunks(Path(path), "session", None):
+            digest.update(chunk)
+            if progress is not None:
+                progress(share)
+    except FileFormatError:
+        return None
+    return digest.hexdigest()
+
+
 def _chunks(place: Path, what: str, largest: int | None) -> Iterator[tuple[bytes, float]]:
     """Yield the file in pieces, each with the share read so far; other threads run between."""
     if place.is_dir():

@@ -57,7 +57,7 @@ class SessionRecord:
     unknown: tuple[tuple[str, str], ...] = ()
 
 
-def write_session(path: str | Path, record: SessionRecord) -> None:
+def write_session(path: str | Path, record: SessionRecord, *, relative_meshes: bool = True) -> None:
     """Write a session file; reading it gives back the same record exactly.
 
     Parameters
@@ -65,7 +65,10 @@ def write_session(path: str | Path, record: SessionRecord) -> None:
     path
         The file, named ``NAME.pinwarp.csv`` by custom.
     record
-        What to write. Mesh paths are written relative to the file's folder where possible.
+        What to write.
+    relative_meshes
+        Whether mesh paths are written as seen from the file's folder, where possible, so that
+        they can move together.
 
     Raises
     ------
@@ -94,7 +97,7 @@ def write_session(path: str | Path, record: SessionRecord) -> None:
             )
     if not record.warping_penalty >= 0:
         raise PenaltyError(f"The warping penalty is {record.warping_penalty}; it cannot be saved.")
-    folder = Path(os.path.abspath(path)).parent
+    folder = Path(os.path.abspath(path)).parent if relative_meshes else None
     header = [("pinwarp-session", str(VERSION))]
     for key, mesh in (
         ("source_mesh", record.source_mesh),

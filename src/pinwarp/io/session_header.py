@@ -194,7 +194,7 @@ def _value(key: str, text: str, folder: Path) -> MeshReference | float | bool | 
         case "source_mirrored" | "destination_mirrored":
             return _axes(key, text)
         case "warping_penalty":
-            return _penalty(text)
+            return penalty_of(text)
         case "treat_as_planar":
             if text.lower() not in YES_NO:
                 raise ValueError(f"{key} is {shortened(text)} and neither yes nor no")
@@ -227,10 +227,22 @@ def _blend(text: str) -> float:
     return value
 
 
-def _penalty(text: str) -> float:
+def penalty_of(text: str, separator: str = ",") -> float:
+    """Read a warping penalty; ``inf`` is the affine fit.
+
+    Raises
+    ------
+    ValueError
+        With the reason as its message.
+
+    Examples
+    --------
+    >>> penalty_of("0.0042"), penalty_of("inf"), penalty_of("0,5", ";")
+    (0.0042, inf, 0.5)
+    """
     if text.lower() == "inf":
         return math.inf
-    value = number_of(text, ",")
+    value = number_of(text, separator)
     if value < 0:
         raise ValueError(f"the warping penalty {text} is negative")
     return value

@@ -8,7 +8,7 @@ from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Side
 from pinwarp.io.csv_text import lines_of, read_text
 from pinwarp.io.file_names import is_session
-from pinwarp.io.landmark_formats.opensim_creator import read_landmarks
+from pinwarp.io.landmark_files import read_landmarks, recognised
 from pinwarp.io.session_file import read_session
 
 
@@ -36,9 +36,10 @@ def read_template(path: Path) -> tuple[str, ...]:
     """
     if is_session(path):
         return tuple(landmark.name for landmark in read_session(path).landmarks)
-    lines = [line.strip() for line in lines_of(read_text(path, "template"))]
+    text = read_text(path, "template")
+    lines = [line.strip() for line in lines_of(text)]
     names = [line for line in lines if line and not line.startswith("#")]
-    if any(separator in line for line in names for separator in ",;\t"):
+    if recognised(text) or any(separator in line for line in names for separator in ",;\t"):
         return tuple(x.name for x in read_landmarks(path, Side.SOURCE).landmarks)
     if not names:
         raise FileFormatError(path, "There is no name in it. Write one name on each line.")

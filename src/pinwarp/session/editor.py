@@ -85,6 +85,8 @@ class ViewState:
     grid, grid_share
         The grid that is drawn, and where a plane of it crosses its axis: from 0, the low side of
         the source, to 1.
+    curve
+        Whether the figures over the penalty are drawn above its slider.
     map, map_opacity
         What the warped source is coloured by, if anything, and its opacity then.
     map_relative
@@ -107,6 +109,7 @@ class ViewState:
     section: float | None = None
     grid: GridKind = GridKind.NONE
     grid_share: float = 0.5
+    curve: bool = True
     map: MapKind | None = None
     map_opacity: float = 1.0
     map_relative: bool = False
@@ -120,6 +123,9 @@ class ViewState:
 
 class Editor:
     """Holds the truth; views render it and ask for changes.
+
+    ``path`` is the file of the session and ``file_sha256`` its hash when it was read or written
+    here; both are None where there is none.
 
     Signals are in the past tense: ``session_changed`` (also while previewing a drag),
     ``selection_changed``, ``view_changed`` and ``saved`` (the file or the unsaved mark changed).
@@ -147,6 +153,7 @@ class Editor:
         self.selection = Selection()
         self.view = ViewState()
         self.path: Path | None = None
+        self.file_sha256: str | None = None
 
     @property
     def session(self) -> Session:
@@ -207,24 +214,35 @@ class Editor:
         self._history.redo()
         self._announce()
 
-    def replace_all(self, session: Session, path: Path | None, *, saved: bool = True) -> None:
+    def replace_all(
+        self,
+        session: Session,
+        path: Path | None,
+        *,
+        sha256: str | None = None,
+        saved: bool = True,
+    ) -> None:
         """Start over with another session: nothing before it can be undone.
 
         Parameters
         ----------
+        session
+            The session.
+        path, sha256
+            Its file, and the hash of that when it was read.
         saved
             False for a session that no file holds as it is.
         """
         self._history = History(session)
         self._history.mark_saved(saved=saved)
         self._preview = None
-        self.path = path
+        self.path, self.file_sha256 = path, sha256
         self._announce()
         self.saved.emit()
 
-    def mark_saved(self, path: Path) -> None:
-        """Remember where the session was saved."""
-        self.path = path
+    def mark_saved(self, path: Path, sha256: str | None = None) -> None:
+        """Remember where the session was saved, and the hash of the file."""
+        self.path, self.file_sha256 = path, sha256
         self._history.mark_saved()
         self.saved.emit()
 

@@ -309,11 +309,23 @@ def mirror_source(session: Session, axis: str) -> Session:
 
 
 def import_side(session: Session, side: Side, landmarks: Iterable[Landmark]) -> Session:
-    """Bring in positions for one side: by name where the name is known, else as new landmarks."""
+    """Bring in positions for one side: by name where the name is known, else as new landmarks.
+
+    A landmark without a position comes as a name to be placed; it takes no position away.
+
+    Examples
+    --------
+    >>> session = Session(landmarks=(Landmark("head", (1.0, 2.0, 3.0)),))
+    >>> arriving = [Landmark("head"), Landmark("fovea")]
+    >>> [x.source for x in import_side(session, Side.SOURCE, arriving).landmarks]
+    [(1.0, 2.0, 3.0), None]
+    """
     arriving = {landmark.name: landmark.position(side) for landmark in landmarks}
     known = {landmark.name for landmark in session.landmarks}
     merged = tuple(
-        landmark.placed(side, arriving[landmark.name]) if landmark.name in arriving else landmark
+        landmark.placed(side, arriving[landmark.name])
+        if arriving.get(landmark.name) is not None
+        else landmark
         for landmark in session.landmarks
     )
     new = tuple(
@@ -327,10 +339,12 @@ def import_side(session: Session, side: Side, landmarks: Iterable[Landmark]) -> 
 def import_pairs(session: Session, landmarks: Iterable[Landmark]) -> Session:
     """Bring in pairs: known names get the positions that arrive, others become new landmarks."""
     arriving = tuple(landmarks)
+    known = {landmark.name for landmark in session.landmarks}
     for side in Side:
-        placed = [landmark for landmark in arriving if landmark.position(side) is not None]
-        session = import_side(session, side, placed)
-    return session
+        session = import_side(session, side, arriving)
+    # A new pair may come switched off; one that is here keeps its state.
+    off = {landmark.name for landmark in arriving if not landmark.enabled} - known
+    return set_enabled(session, off, False)
 
 
 def paste(session: Session, rows: Iterable[PastedLandmark]) -> Session:

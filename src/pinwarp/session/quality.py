@@ -171,6 +171,36 @@ def _rms_by_components(
     return {part: left[as_drawn(part)] for part in Components}
 
 
+def penalty_advice(curve: PenaltyCurve) -> str:
+    """Say why a curve suggests no penalty, in words for the user.
+
+    Parameters
+    ----------
+    curve
+        The figures over the penalty.
+
+    Returns
+    -------
+    str
+        Empty where a penalty is suggested, or where no pair can be left out.
+
+    Examples
+    --------
+    >>> from pinwarp.core.factor import factorise
+    >>> source = np.random.default_rng(0).normal(size=(30, 3))
+    >>> penalty_advice(penalty_curve(factorise(source), source + 0.1 * source**2))
+    'The least leave-one-out error is at no penalty: the pairs ask for none.'
+    """
+    if curve.is_affine:
+        return "An affine map meets every pair: the penalty changes nothing."
+    first, last = curve.leave_one_out[[0, -1]].tolist()
+    if curve.suggested is not None or not (np.isfinite(first) and np.isfinite(last)):
+        return ""
+    if first <= last:
+        return "The least leave-one-out error is at no penalty: the pairs ask for none."
+    return "The least leave-one-out error is at the affine fit: the pairs ask for no bending."
+
+
 def _about_pairs(
     factor: SourceFactor, source: tuple[Position, ...], destination: Matrix
 ) -> tuple[Finding, ...]:

@@ -37,6 +37,13 @@ class Session:
         The unit of the meshes, for display.
     unknown
         Header lines of the session file that this version does not know.
+
+    Examples
+    --------
+    >>> apex = Landmark("apex", source=(0, 0, 0), destination=(0, 0, 5))
+    >>> session = Session(landmarks=(apex, Landmark("tip")), unit="mm")
+    >>> [pair.name for pair in session.pairs]
+    ['apex']
     """
 
     source: MeshFile | MeshReference | None = None
@@ -106,8 +113,8 @@ def from_record(
 ) -> Session:
     """Return the session that a file describes, with the meshes that could be read."""
     return Session(
-        source=_as_seen(source, record.source_mesh),
-        destination=_as_seen(destination, record.destination_mesh),
+        source=_found(source, record.source_mesh),
+        destination=_found(destination, record.destination_mesh),
         landmarks=record.landmarks,
         warping_penalty=record.warping_penalty,
         convention=PenaltyConvention(record.penalty_convention),
@@ -119,14 +126,18 @@ def from_record(
     )
 
 
-def _as_seen(
-    file: MeshFile | None, reference: MeshReference | None
-) -> MeshFile | MeshReference | None:
-    """Return a mesh as the session sees it: in a mirror, where it says so."""
-    if file is None or reference is None or not reference.mirrored:
-        return file or reference
+def as_seen(file: MeshFile, reference: MeshReference) -> MeshFile:
+    """Return a mesh that was read as the session sees it: in a mirror, where it says so."""
+    if not reference.mirrored:
+        return file
     mesh = mirrored_mesh(file.mesh, reference.mirrored)
     return replace(file, mesh=mesh, mirrored=reference.mirrored)
+
+
+def _found(
+    file: MeshFile | None, reference: MeshReference | None
+) -> MeshFile | MeshReference | None:
+    return file or reference if file is None or reference is None else as_seen(file, reference)
 
 
 def _reference(file: MeshFile | MeshReference | None) -> MeshReference | None:

@@ -6,9 +6,7 @@ from collections.abc import Iterable, Sequence
 from enum import Enum
 from pathlib import Path
 
-from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Side
-from pinwarp.io.atomic import write_atomically
 from pinwarp.io.csv_cells import (
     coordinates_text,
     formula_quoted,
@@ -16,22 +14,18 @@ from pinwarp.io.csv_cells import (
     is_number,
     position_of,
 )
-from pinwarp.io.csv_text import (
-    Row,
-    csv_line,
-    lines_of,
-    read_text,
-    refuse_binary,
-    rows_of,
-    separator_of,
-)
-from pinwarp.io.landmark_formats.reading import LandmarkReading, SkippedLine
+from pinwarp.io.csv_text import Row, csv_line, lines_of, rows_of, separator_of
+from pinwarp.io.landmark_formats.lines import checked_name
+from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
+from pinwarp.io.landmark_formats.writing import Written, placed_only
 
-__all__ = ["LandmarkReading", "SkippedLine", "read_landmarks", "write_pairs", "write_side"]
+NAME = "OpenSim Creator CSV"
+SUFFIXES = (".csv", ".txt")
+HOLDS_PAIRS = True
 
 _SIDE_HEADER = ("name", "x", "y", "z")
 _PAIRS_HEADER = ("name", "source.x", "source.y", "source.z", "dest.x", "dest.y", "dest.z")
-_LONGEST_TEXT = 120
+_LINES_LOOKED_AT = 50
 
 
 class _Columns(Enum):
@@ -43,14 +37,35 @@ class _Columns(Enum):
     NAMED_PAIR = "a name and six numbers"
 
 
-def read_landmarks(path: str | Path, side: Side) -> LandmarkReading:
+def matches(head: str) -> bool:
+    """Whether a text begins as a table: a header, or lines with three numbers.
+
+    Examples
+    --------
+    >>> matches("fovea;1,5;2;3"), matches("Version 1.0")
+    (True, False)
+    """
+    lines = [line for line in lines_of(head)[:_LINES_LOOKED_AT] if not line.startswith("#")][:10]
+    separator = separator_of(lines)
+    for row in rows_of(lines, separator):
+        cells = row.cells
+        if len(cells) > 2 and sum(is_number(cell, separator) for cell in cells) > 2:
+            return True
+        if {"x", "y", "z"} <= {cell.strip().lower().rpartition(".")[2] for cell in cells}:
+            return True
+    return False
+
+
+def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     r"""Read a file of one side, or of pairs, whichever it is.
 
     Parameters
     ----------
     path
-        The file. Its header may be in any case or missing; cells may be separated by commas,
-        semicolons (then with decimal commas, too) or tabs.
+        The file, for the messages.
+    text
+        What is in it. Its header may be in any case or missing; cells may be separated by
+        commas, semicolons (then with decimal commas, too) or tabs.
     side
         The side that a file of one side belongs to; a file of pairs fills both.
 
@@ -59,60 +74,42 @@ def read_landmarks(path: str | Path, side: Side) -> LandmarkReading:
     LandmarkReading
         Landmarks without a name are called ``landmark_0``, ``landmark_1`` and so on by their
         row, so that two nameless files still match where one has a bad row. Blanks around a
-        name are dropped.
+        name are dropped. The format says neither a unit nor a frame.
 
     Raises
     ------
     FileFormatError
-        When the file is missing, not text, larger than 64 MB, or no landmark could be read.
+        When no landmark could be read.
 
     Examples
     --------
-    >>> import tempfile, pathlib
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = pathlib.Path(folder, "femur.landmarks.csv")
-    ...     _ = path.write_text("Name,X,Y,Z\nfovea,1,2,3\nfar,1,2,nan\n")
-    ...     reading = read_landmarks(path, Side.SOURCE)
+    >>> text = "Name,X,Y,Z\nfovea,1,2,3\nfar,1,2,nan\n"
+    >>> reading = read("femur.landmarks.csv", text, Side.SOURCE)
     >>> reading.landmarks[0].source
     (1.0, 2.0, 3.0)
     >>> reading.skipped
     (SkippedLine(line=3, text='far,1,2,nan', reason="'nan' is not a finite number"),)
     """
-    text = read_text(path, "landmark")
-    refuse_binary(path, text)
     lines = lines_of(text)
-    separator = separator_of([line for line in lines[:50] if not line.startswith("#")][:10])
+    head = [line for line in lines[:_LINES_LOOKED_AT] if not line.startswith("#")]
+    separator = separator_of(head[:10])
     rows = [row for row in rows_of(lines, separator) if not row.is_blank]
     # A quoted "#1" is a name; only a bare # makes a comment.
     comments = [row for row in rows if row.text.startswith("#")]
     rows = [row for row in rows if not row.text.startswith("#")]
     columns, has_header = _columns_of(rows, separator)
-    skipped = [
-        SkippedLine(
-            row.line, row.text[:_LONGEST_TEXT], "it starts with #, which makes it a comment"
-        )
-        for row in comments
-        if len(row.cells) > 3 and all(is_number(cell, separator) for cell in row.cells[1:4])
-    ]
-    found: dict[str, Landmark] = {}
+    gathering = Gathering(path)
+    for row in comments:
+        if len(row.cells) > 3 and all(is_number(cell, separator) for cell in row.cells[1:4]):
+            reason = "it starts with #, which makes it a comment"
+            gathering.skip(row.line, row.text, reason)
     for number, row in enumerate(rows[has_header:]):
-        try:
-            landmark = _landmark(row, columns, separator, side, f"landmark_{number}")
-            if landmark.name in found:
-                raise ValueError(f"the name {landmark.name!r} was used before")
-            found[landmark.name] = landmark
-        except ValueError as error:
-            skipped.append(SkippedLine(row.line, row.text[:_LONGEST_TEXT], str(error)))
-    if not found:
-        reason = f" (line {skipped[0].line}: {skipped[0].reason})" if skipped else ""
-        raise FileFormatError(
-            path,
-            f"No landmark could be read{reason}. "
-            "Expected are lines of a name and three numbers, as in: fovea,1.5,2,-3",
-        )
-    is_pairs = columns in (_Columns.PAIR, _Columns.NAMED_PAIR)
-    return LandmarkReading(
-        tuple(found.values()), is_pairs, tuple(sorted(skipped, key=lambda line: line.line))
+        default = f"landmark_{number}"
+        gathering.take(row.line, row.text, _landmark, row, columns, separator, side, default)
+    return gathering.reading(
+        NAME,
+        "lines of a name and three numbers, as in: fovea,1.5,2,-3",
+        is_pairs=columns in (_Columns.PAIR, _Columns.NAMED_PAIR),
     )
 
 
@@ -155,7 +152,7 @@ def _landmark(row: Row, columns: _Columns, separator: str, side: Side, default: 
         if position is None:
             raise ValueError("it has no coordinates")
         source, destination = (position, None) if side is Side.SOURCE else (None, position)
-    name = formula_unquoted(name.strip()) if name.strip() else default
+    name = checked_name(formula_unquoted(name.strip())) or default
     return Landmark(name, source=source, destination=destination)
 
 
@@ -172,75 +169,43 @@ def _after_name(cells: Sequence[str]) -> Sequence[str]:
     return cells if len(cells) == 3 else cells[1:]
 
 
-def write_side(path: str | Path, landmarks: Iterable[Landmark], side: Side) -> None:
-    """Write the positions on one side; landmarks without one are left out.
+def text_of(landmarks: Sequence[Landmark], side: Side | None, unit: str, title: str) -> Written:
+    """Return the file of one side, or of pairs.
 
     Parameters
     ----------
-    path
-        The file.
     landmarks
-        The landmarks.
+        Those that have no position on the side are left out; in pairs, what is not placed
+        yet stays empty.
     side
-        The side to write.
-
-    Raises
-    ------
-    OSError
-        When the file cannot be written; an older one is untouched.
+        The side to write, or None for pairs.
+    unit, title
+        Not used: the format has a place for neither.
 
     Examples
     --------
-    >>> import tempfile, pathlib
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = pathlib.Path(folder, "femur.landmarks.csv")
-    ...     write_side(path, [Landmark("fovea", (1, 2, 0.1)), Landmark("unset")], Side.SOURCE)
-    ...     print(path.read_text(), end="")
+    >>> landmarks = [Landmark("fovea", (1, 2, 0.1)), Landmark("unset")]
+    >>> written = text_of(landmarks, Side.SOURCE, "m", "femur")
+    >>> print(written.text, *written.notes, end="")
     name,x,y,z
     fovea,1.0,2.0,0.1
-    """
-    lines = [csv_line(_SIDE_HEADER)]
-    for landmark in landmarks:
-        position = landmark.position(side)
-        if position is not None:
-            lines.append(csv_line([formula_quoted(landmark.name), *coordinates_text(position)]))
-    write_atomically(path, "".join(lines))
-
-
-def write_pairs(path: str | Path, landmarks: Iterable[Landmark]) -> None:
-    """Write both sides into one file; what is not placed yet stays empty.
-
-    Parameters
-    ----------
-    path
-        The file.
-    landmarks
-        The landmarks.
-
-    Raises
-    ------
-    OSError
-        When the file cannot be written; an older one is untouched.
-
-    Examples
-    --------
-    >>> import tempfile, pathlib
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = pathlib.Path(folder, "pairs.csv")
-    ...     write_pairs(path, [Landmark("fovea", (1, 2, 3))])
-    ...     print(path.read_text(), end="")
+     1 landmark that is not placed was left out.
+    >>> print(text_of([Landmark("fovea", (1, 2, 3))], None, "m", "femur").text, end="")
     name,source.x,source.y,source.z,dest.x,dest.y,dest.z
     fovea,1.0,2.0,3.0,,,
     """
-    lines = [csv_line(_PAIRS_HEADER)]
-    lines += [
-        csv_line(
-            [
-                formula_quoted(landmark.name),
-                *coordinates_text(landmark.source),
-                *coordinates_text(landmark.destination),
-            ]
-        )
-        for landmark in landmarks
-    ]
-    write_atomically(path, "".join(lines))
+    del unit, title
+    if side is None:
+        pairs = [
+            (x.name, *coordinates_text(x.source), *coordinates_text(x.destination))
+            for x in landmarks
+        ]
+        return Written(_table(_PAIRS_HEADER, pairs))
+    placed, notes = placed_only(landmarks, side)
+    rows = [(name, *coordinates_text(position)) for name, position in placed]
+    return Written(_table(_SIDE_HEADER, rows), notes)
+
+
+def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    lines = [csv_line([formula_quoted(name), *cells]) for name, *cells in rows]
+    return csv_line(header) + "".join(lines)

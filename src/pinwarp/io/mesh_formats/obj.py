@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from pinwarp.core.mesh import Mesh
 from pinwarp.io.mesh_formats.surface import BrokenMeshError, Report, Surface, counted
+from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
 
 _VERTEX = re.compile(rb"^[ \t]*v[ \t]+([^\r\n#]*)", re.MULTILINE)
 _FACE = re.compile(rb"^[ \t]*fo?[ \t]+([^\r\n#]*)", re.MULTILINE)
@@ -117,7 +118,7 @@ def _complaint(chunk: bytes, lines_before: int) -> BrokenMeshError:
     return BrokenMeshError("The vertices or faces cannot be read. Export the mesh again.")
 
 
-def write_obj(path: Path, mesh: Mesh) -> None:
+def write_obj(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     """Write an OBJ file whose numbers read back exactly.
 
     Parameters
@@ -126,6 +127,8 @@ def write_obj(path: Path, mesh: Mesh) -> None:
         The file.
     mesh
         The mesh.
+    extras
+        Its normals; there is no room for scalars.
 
     Examples
     --------
@@ -141,6 +144,13 @@ def write_obj(path: Path, mesh: Mesh) -> None:
         for start in range(0, len(mesh.vertices), _ROWS):
             vertices = mesh.vertices[start : start + _ROWS].tolist()
             file.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in vertices)
+        if extras.normals is not None:
+            for start in range(0, len(mesh.vertices), _ROWS):
+                normals = extras.normals[start : start + _ROWS].tolist()
+                file.writelines(f"vn {x:.7g} {y:.7g} {z:.7g}\n" for x, y, z in normals)
+        # Each vertex has the normal of its own number.
+        corner = "{0}" if extras.normals is None else "{0}//{0}"
+        row = f"f {corner} {corner.replace('0', '1')} {corner.replace('0', '2')}\n"
         for start in range(0, len(mesh.faces), _ROWS):
             faces = (mesh.faces[start : start + _ROWS] + np.int64(1)).tolist()
-            file.writelines(f"f {a} {b} {c}\n" for a, b, c in faces)
+            file.writelines(row.format(*corners) for corners in faces)

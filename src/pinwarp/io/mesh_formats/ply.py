@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from pinwarp.core.mesh import Mesh
 from pinwarp.io.mesh_formats.ply_header import Element, Property, in_doubles, read_header
 from pinwarp.io.mesh_formats.surface import BrokenMeshError, Report, Surface, counted
+from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
 
 _CODES = {"i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I", "f4": "f", "f8": "d"}
 _CHUNK = 1 << 20
@@ -192,7 +193,7 @@ def _polygons(columns: _Columns) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     return corners.astype(np.int64), sizes
 
 
-def write_ply(path: Path, mesh: Mesh) -> None:
+def write_ply(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     r"""Write a binary PLY file in double precision.
 
     Parameters
@@ -201,6 +202,8 @@ def write_ply(path: Path, mesh: Mesh) -> None:
         The file.
     mesh
         The mesh.
+    extras
+        Normals and scalars; the latter as properties of single precision.
 
     Examples
     --------
@@ -210,16 +213,29 @@ def write_ply(path: Path, mesh: Mesh) -> None:
     ...     Path(folder, "a.ply").read_bytes()[:37]
     b'ply\nformat binary_little_endian 1.0\nc'
     """
+    fields: list[tuple[str, str] | tuple[str, str, int]] = [("places", "<f8", 3)]
+    properties = "property double x\nproperty double y\nproperty double z\n"
+    if extras.normals is not None:
+        fields.append(("normals", "<f4", 3))
+        properties += "property float nx\nproperty float ny\nproperty float nz\n"
+    for name in extras.scalars:
+        fields.append((name, "<f4"))
+        properties += f"property float {name}\n"
+    vertices = np.empty(len(mesh.vertices), dtype=fields)
+    vertices["places"] = mesh.vertices
+    if extras.normals is not None:
+        vertices["normals"] = extras.normals
+    for name, values in extras.scalars.items():
+        vertices[name] = values
     faces = np.empty(len(mesh.faces), dtype=[("length", "u1"), ("corners", "<i4", 3)])
     faces["length"] = 3
     faces["corners"] = mesh.faces
     header = (
         "ply\nformat binary_little_endian 1.0\ncomment pinwarp\n"
-        f"element vertex {len(mesh.vertices)}\n"
-        "property double x\nproperty double y\nproperty double z\n"
+        f"element vertex {len(mesh.vertices)}\n{properties}"
         f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
     )
     with path.open("wb") as file:
         file.write(header.encode())
-        file.write(mesh.vertices.astype("<f8").tobytes())
+        file.write(vertices.tobytes())
         file.write(faces.tobytes())

@@ -16,6 +16,7 @@ from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 from pinwarp.core.mesh import Mesh
+from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
 
 
 def cut_polygons(
@@ -51,7 +52,7 @@ def cut_polygons(
     return triangles.reshape(-1, 3)
 
 
-def write_vtp(path: Path, mesh: Mesh) -> None:
+def write_vtp(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     """Write a VTP file in double precision.
 
     Parameters
@@ -60,6 +61,8 @@ def write_vtp(path: Path, mesh: Mesh) -> None:
         The file.
     mesh
         The mesh.
+    extras
+        Normals and scalars, in single precision.
 
     Raises
     ------
@@ -74,10 +77,10 @@ def write_vtp(path: Path, mesh: Mesh) -> None:
     ...     b'type="PolyData"' in Path(folder, "a.vtp").read_bytes()
     True
     """
-    _write(vtkXMLPolyDataWriter(), path, mesh)
+    _write(vtkXMLPolyDataWriter(), path, mesh, extras)
 
 
-def write_legacy_vtk(path: Path, mesh: Mesh) -> None:
+def write_legacy_vtk(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     """Write a binary legacy VTK file in double precision.
 
     Parameters
@@ -86,6 +89,8 @@ def write_legacy_vtk(path: Path, mesh: Mesh) -> None:
         The file.
     mesh
         The mesh.
+    extras
+        Normals and scalars, in single precision.
 
     Raises
     ------
@@ -103,10 +108,10 @@ def write_legacy_vtk(path: Path, mesh: Mesh) -> None:
     writer = vtkPolyDataWriter()
     writer.SetFileTypeToBinary()
     writer.SetHeader("pinwarp")
-    _write(writer, path, mesh)
+    _write(writer, path, mesh, extras)
 
 
-def _write(writer: Any, path: Path, mesh: Mesh) -> None:
+def _write(writer: Any, path: Path, mesh: Mesh, extras: VertexData) -> None:
     complaints: list[str] = []
 
     def complain(_writer: object, _event: str, text: str) -> None:
@@ -116,7 +121,17 @@ def _write(writer: Any, path: Path, mesh: Mesh) -> None:
     complain.CallDataType = "string"  # type: ignore[attr-defined]  # how VTK is asked for the text
     writer.AddObserver("ErrorEvent", complain)
     sizes = np.arange(0, mesh.faces.size + 1, 3)
-    writer.SetInputData(_polydata(mesh.vertices, mesh.faces.ravel(), sizes))
+    surface = _polydata(mesh.vertices, mesh.faces.ravel(), sizes)
+    data = surface.GetPointData()
+    if extras.normals is not None:
+        normals = numpy_to_vtk(np.ascontiguousarray(extras.normals, dtype=np.float32), deep=True)
+        normals.SetName("Normals")
+        data.SetNormals(normals)
+    for name, values in extras.scalars.items():
+        array = numpy_to_vtk(np.ascontiguousarray(values, dtype=np.float32), deep=True)
+        array.SetName(name)
+        data.AddArray(array)
+    writer.SetInputData(surface)
     writer.SetFileName(str(path))
     if not writer.Write() or writer.GetErrorCode() or complaints:
         reason = complaints[0].strip().splitlines()[-1] if complaints else "Is the disk full?"

@@ -21,6 +21,7 @@ from pinwarp.io.mesh_formats.surface import (
     counted,
     merge_equal,
 )
+from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
 
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -148,7 +149,7 @@ def _first_bad_vertex(chunk: bytes) -> int:
     return 0
 
 
-def write_stl(path: Path, mesh: Mesh) -> None:
+def write_stl(path: Path, mesh: Mesh, _extras: VertexData = NO_DATA) -> None:
     """Write a binary STL file; its numbers have single precision, the format knows no other.
 
     Parameters
@@ -156,7 +157,7 @@ def write_stl(path: Path, mesh: Mesh) -> None:
     path
         The file.
     mesh
-        The mesh.
+        The mesh; its triangles get normals of their own, there is no room for anything else.
 
     Raises
     ------

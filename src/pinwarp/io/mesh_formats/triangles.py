@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from pinwarp.core.mesh import Mesh
-from pinwarp.io.mesh_formats.polydata import cut_polygons
 from pinwarp.io.mesh_formats.surface import BrokenMeshError, Surface, counted
 
 
@@ -52,6 +51,9 @@ def mesh_of(surface: Surface) -> tuple[Mesh, tuple[str, ...]]:
     if len(sizes) and sizes.max() > 3:
         many = counted(int((sizes > 3).sum()), "polygon")
         notes.append(f"{many} of more than 3 corners cut into triangles.")
+        # VTK is loaded only for what needs it.
+        from pinwarp.io.mesh_formats.polydata import cut_polygons
+
         triangles = cut_polygons(points, corners, sizes)
     else:
         triangles = corners.reshape(-1, 3)

@@ -37,6 +37,7 @@ _TYPES = {
     "Float64": "f8",
 }
 _APPENDED = re.compile(rb"<AppendedData\b[^>]*>\s*_")
+_PROLOGUE = 1 << 16
 _DAMAGED = "The data of the file is damaged or was cut off. Export or copy it again."
 
 
@@ -100,6 +101,11 @@ def read_vtp(data: bytes, report: Report) -> Surface:
 def _open(data: bytes) -> tuple[ET.Element, _Encoding]:
     """Take the XML and the data appended to it apart."""
     appended = _APPENDED.search(data)
+    # Entities of its own can make a small file endless; in UTF-16 there are zeros between.
+    if b"<!ENTITY" in data[:_PROLOGUE].replace(b"\0", b""):
+        raise BrokenMeshError(
+            "The file declares entities, which no mesh has a use for. Export it again."
+        )
     try:
         # What follows the underscore may be any bytes, which no XML parser takes.
         root = ET.fromstring(data[: appended.start()] + b"</VTKFile>" if appended else data)

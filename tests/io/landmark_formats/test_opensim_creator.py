@@ -10,14 +10,12 @@ from hypothesis import strategies as st
 
 from pinwarp.core.errors import FileFormatError, PinwarpError
 from pinwarp.core.landmarks import Landmark, Side
-from pinwarp.io.landmark_formats.opensim_creator import (
+from pinwarp.io.landmark_files import (
     LandmarkReading,
     read_landmarks,
-    write_pairs,
-    write_side,
+    write_landmarks,
 )
-
-from . import strategies
+from tests.io import strategies
 
 
 def read(folder: Path, content: str | bytes, side: Side = Side.SOURCE) -> LandmarkReading:
@@ -193,7 +191,7 @@ def test_one_side_comes_back_exactly(
     tmp_path_factory: pytest.TempPathFactory, side: Side, landmarks: list[Landmark]
 ) -> None:
     path = tmp_path_factory.getbasetemp() / "side.csv"
-    write_side(path, landmarks, side)
+    write_landmarks(path, landmarks, side)
     expected = [(mark.name, repr(mark.position(side))) for mark in landmarks if mark.position(side)]
     if not expected:
         return
@@ -209,7 +207,7 @@ def test_pairs_come_back_exactly(
     if not landmarks:
         return
     path = tmp_path_factory.getbasetemp() / "pairs.csv"
-    write_pairs(path, landmarks)
+    write_landmarks(path, landmarks, None)
     reading = read_landmarks(path, Side.SOURCE)
     assert reading.is_pairs
     assert reading.skipped == ()
@@ -219,7 +217,7 @@ def test_pairs_come_back_exactly(
 
 
 def test_a_name_that_is_a_formula_is_not_one_in_the_file(tmp_path: Path) -> None:
-    write_side(tmp_path / "a.csv", [Landmark("=cmd|' /C calc'!A0", (1, 2, 3))], Side.SOURCE)
+    write_landmarks(tmp_path / "a.csv", [Landmark("=cmd|' /C calc'!A0", (1, 2, 3))], Side.SOURCE)
     with (tmp_path / "a.csv").open(newline="") as file:
         cell = list(csv.reader(file))[1][0]
     assert cell == "'=cmd|' /C calc'!A0"

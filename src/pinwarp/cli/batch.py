@@ -1,0 +1,199 @@
+"""``pinwarp batch``: one source warped to many subjects."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import threading
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pinwarp.cli.options import Applied, Blend, Penalty, with_options
+from pinwarp.cli.telling import INTERRUPTED, progress_bar, tell_error, tell_notes
+from pinwarp.core.errors import PinwarpError
+from pinwarp.core.landmarks import Landmark, Role, Side
+from pinwarp.io.landmark_files import read_landmarks
+from pinwarp.io.manifest import read_manifest
+from pinwarp.io.meshes import read_mesh
+from pinwarp.session import batch as batches
+from pinwarp.session import edits
+from pinwarp.session.files import read_session
+from pinwarp.session.landmark_conversion import frame_notes
+from pinwarp.session.session import Session
+from pinwarp.session.subject import Task
+from pinwarp.session.workers import cores, runner_of
+
+FAILED = 1
+
+
+def batch(
+    manifest: Annotated[
+        Path,
+        typer.Argument(
+            metavar="MANIFEST.csv",
+            help="One row for each subject: name, destination_landmarks and, where wanted, "
+            "destination_mesh, penalty, components. Paths are seen from its folder.",
+        ),
+    ],
+    out: Annotated[
+        Path,
+        typer.Option(
+            "--out",
+            "-o",
+            metavar="DIR",
+            help="Where NAME_warped.ply, NAME_passengers.landmarks.csv and summary.csv go.",
+        ),
+    ],
+    source: Annotated[
+        Path | None, typer.Option(metavar="MESH", help="The mesh to warp.", show_default=False)
+    ] = None,
+    source_landmarks: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Its landmarks, to be paired by name."),
+    ] = None,
+    passengers: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Landmarks on it to be carried, not solved for."),
+    ] = None,
+    session: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="SESSION",
+            help="A session instead: its source mesh, landmarks, passengers and settings.",
+        ),
+    ] = None,
+    penalty: Penalty = None,
+    components: Applied = None,
+    blend: Blend = None,
+    suffix: Annotated[
+        str | None,
+        typer.Option(
+            "--format",
+            metavar="SUFFIX",
+            help="Of the warped meshes: stl, ply, obj, vtp or vtk; without it the source's.",
+            show_default=False,
+        ),
+    ] = None,
+    jobs: Annotated[
+        int | None,
+        typer.Option(min=1, help="Processes at once; without it one for each core."),
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Do the work on the Dask cluster of this scheduler, such as "
+            "tcp://10.0.0.1:8786. Its workers read and write the files themselves: all paths "
+            "must lead to the same files there. Needs pinwarp\\[cluster].",
+        ),
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Do subjects again that have not changed.")
+    ] = False,
+) -> None:
+    """Warp one source to many subjects and gather the figures in one table.
+
+    A second run does only what failed, is missing or has changed.
+
+    Where a subject fails the others are done all the same, and the exit code is 1.
+    """
+    subjects = read_manifest(manifest)
+    shared = _source(source, source_landmarks, passengers, session)
+    shared = with_options(shared, penalty, components, blend)
+    given = [path for path in (source_landmarks, passengers, session) if path is not None]
+    tasks = batches.plan(
+        subjects,
+        shared,
+        out.absolute(),
+        suffix=None if suffix is None else f".{suffix.lower().removeprefix('.')}",
+        inputs=given,
+    )
+    if subjects.unused:
+        tell_notes([f"{manifest.name}: not used: {', '.join(subjects.unused)}."])
+    with progress_bar() as progress, _stopped_by_signals() as stop:
+        bar = progress.add_task("Warping", total=len(tasks))
+
+        def told(task: Task, status: str, words: str) -> None:
+            progress.advance(bar)
+            if status == batches.FAILED:
+                tell_error(f"{task.subject.name}: {words}")
+
+        tally = batches.run(
+            tasks,
+            out.absolute(),
+            runner_of(jobs or cores(), scheduler, stop),
+            force=force,
+            told=told,
+        )
+    typer.echo(
+        f"{tally.done} done, {tally.unchanged} unchanged, {tally.failed} failed "
+        f"of {tally.total}: see {out / batches.SUMMARY}"
+    )
+    if tally.is_interrupted:
+        tell_error("Stopped. What was done stays: the same command goes on from there.")
+        raise typer.Exit(INTERRUPTED)
+    if tally.failed:
+        raise typer.Exit(FAILED)
+
+
+def _source(
+    mesh: Path | None, landmarks: Path | None, passengers: Path | None, session: Path | None
+) -> Session:
+    """Return the source with its mesh and landmarks, however it was given."""
+    if session is not None:
+        if mesh is not None or landmarks is not None:
+            raise PinwarpError("Give either --session, or --source and --source-landmarks.")
+        found = read_session(session, meshes=[Side.SOURCE])
+        if found.source is not None and found.mesh(Side.SOURCE) is None:
+            raise PinwarpError(
+                f"The source mesh {found.source.path} is not there. Was it moved or renamed?"
+            )
+    elif mesh is None or landmarks is None:
+        raise PinwarpError("Name the source: --source with --source-landmarks, or --session.")
+    else:
+        found = edits.set_mesh(Session(), Side.SOURCE, read_mesh(mesh))
+        found = replace(found, landmarks=_read(landmarks, Role.PAIR, found.unit))
+    if passengers is not None:
+        arriving = _read(passengers, Role.PASSENGER, found.unit)
+        if taken := {x.name for x in found.landmarks} & {x.name for x in arriving}:
+            raise PinwarpError(
+                f"{passengers.name}: {min(taken)} is a landmark of the source already. "
+                "Rename or remove one."
+            )
+        found = replace(found, landmarks=(*found.landmarks, *arriving))
+    return found
+
+
+def _read(path: Path, role: Role, unit: str) -> tuple[Landmark, ...]:
+    reading = read_landmarks(path, Side.SOURCE)
+    skipped = (f"line {x.line} was skipped: {x.reason}." for x in reading.skipped)
+    tell_notes((*reading.notes, *frame_notes(reading, unit), *skipped), path.name)
+    return tuple(replace(x, role=role) for x in reading.landmarks)
+
+
+@contextlib.contextmanager
+def _stopped_by_signals() -> Iterator[threading.Event]:
+    """Give an event that Ctrl+C sets, and SIGTERM, by which a cluster's queue ends a job.
+
+    Nothing is interrupted at an unlucky moment; whoever presses Ctrl+C again means it.
+    """
+    stop = threading.Event()
+
+    def handle(_number: int, _frame: object) -> None:
+        if stop.is_set():
+            raise KeyboardInterrupt
+        stop.set()
+
+    if threading.current_thread() is not threading.main_thread():
+        yield stop
+        return
+    before = {number: signal.signal(number, handle) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield stop
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,0 +1,128 @@
+"""``pinwarp check``: how good the warp of a session is."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+import pinwarp
+from pinwarp.cli.options import SessionFile
+from pinwarp.session import check as checking
+from pinwarp.session.exports import applied_in_words
+from pinwarp.session.files import read_session
+from pinwarp.session.session import Session
+
+FLAGGED = 1
+
+
+def check(
+    session: SessionFile,
+    as_json: Annotated[bool, typer.Option("--json", help="Print figures for a program.")] = False,
+    strict: Annotated[
+        bool,
+        typer.Option(
+            "--strict",
+            help="Exit with 1 where pairs look wrong (suspect, inconsistent, swapped, mirrored, "
+            "in conflict) or the warp folds.",
+        ),
+    ] = False,
+) -> None:
+    """Print how good a session's warp is: residuals, leave-one-out errors, findings, distances."""
+    opened = read_session(session)
+    checked = checking.check(opened)
+    if as_json:
+        about = _about(opened)
+        # The affine fit's penalty is no number to JSON; session files say "inf", too.
+        if math.isinf(opened.warping_penalty):
+            about["warping_penalty"] = "inf"
+        words = about | checked.as_json()
+        typer.echo(json.dumps(words, indent=2, ensure_ascii=False, allow_nan=False))
+    else:
+        _print(Console(), session.name, opened, checked)
+    if strict and checked.is_flagged:
+        raise typer.Exit(FLAGGED)
+
+
+def _about(session: Session) -> dict[str, Any]:
+    return {
+        "pinwarp": pinwarp.__version__,
+        "unit": session.unit,
+        "warping_penalty": session.warping_penalty,
+        "penalty_convention": session.convention.value,
+        "components": session.components.value,
+        "blend": session.blend,
+    }
+
+
+def _print(console: Console, name: str, session: Session, checked: checking.Check) -> None:
+    unit = session.unit
+    pairs = Table("Pair", title=f"{name}: {len(checked.pairs)} pairs, lengths in {unit}")
+    for column in ("Residual", "Left out", "Standardised"):
+        pairs.add_column(column, justify="right")
+    named = {name for x in checked.findings if checking.is_flagged(x.finding) for name in x.names}
+    lengths = [x for pair in checked.pairs for x in (pair.residual, pair.leave_one_out)]
+    decimals = _decimals(max((x for x in lengths if not math.isnan(x)), default=0.0))
+    for pair in checked.pairs:
+        pairs.add_row(
+            # Names are the user's: brackets in them are no markup.
+            escape(pair.name),
+            _number(pair.residual, decimals),
+            _number(pair.leave_one_out, decimals),
+            _number(pair.standardised, 2),
+            style="bold" if pair.name in named else None,
+        )
+    console.print(pairs)
+    for label, words in _figures(session, checked):
+        console.print(f"{label:<22}{words}", markup=False, highlight=False)
+    for found in checked.findings:
+        mark = "!" if checking.is_flagged(found.finding) else "-"
+        console.print(f"{mark} {found.sentence}", markup=False, highlight=False)
+    for note in checked.notes:
+        console.print(f"- {note}", markup=False, highlight=False)
+
+
+def _figures(session: Session, checked: checking.Check) -> list[tuple[str, str]]:
+    unit = session.unit
+    figures = [
+        ("Applied", applied_in_words(session)),
+        ("Warping penalty", f"{session.warping_penalty:.6g} {unit} ({session.convention.value})"),
+        ("Suggested penalty", _length(checked.suggested_penalty, unit, "none")),
+        (
+            "Flexibility",
+            "not defined" if checked.flexibility is None else f"{checked.flexibility:.1%}",
+        ),
+        ("RMS residual", _length(checked.rms_residual, unit)),
+        (
+            "RMS left out",
+            _length(checked.rms_leave_one_out, unit),
+        ),
+    ]
+    if checked.folded_vertices is not None:
+        figures.append(("Folded vertices", f"{checked.folded_vertices:,}"))
+    if (far := checked.distance) is not None:
+        figures.append(
+            (
+                "To the destination",
+                f"mean {far.mean:.4g}, 95% {far.percentile_95:.4g}, max {far.maximum:.4g} {unit}",
+            )
+        )
+    return figures
+
+
+def _number(value: float, decimals: int) -> str:
+    return "" if math.isnan(value) else f"{value:.{decimals}f}"
+
+
+def _decimals(largest: float) -> int:
+    """Return after how many decimals the largest of some lengths has four digits."""
+    return max(0, 3 - math.floor(math.log10(largest))) if largest > 0 else 0
+
+
+def _length(value: float | None, unit: str, otherwise: str = "not known") -> str:
+    return otherwise if value is None else f"{value:.4g} {unit}"

@@ -1,0 +1,67 @@
+"""``pinwarp warp``: meshes and landmarks through a session's warp."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pinwarp.cli.options import Applied, Blend, Force, Penalty, SessionFile, with_options
+from pinwarp.cli.telling import BAD_USAGE, progress_bar, tell_error, tell_notes
+from pinwarp.core.errors import PinwarpError
+from pinwarp.core.landmarks import Side
+from pinwarp.session.exports import applied_in_words
+from pinwarp.session.files import read_session, with_meshes
+from pinwarp.session.warp_files import FileWarper, outputs_of, warp_each
+
+
+def warp(
+    session: SessionFile,
+    out: Annotated[
+        Path,
+        typer.Option(
+            "--out", "-o", metavar="OUT", help="A folder, or a file where there is one input."
+        ),
+    ],
+    inputs: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            metavar="INPUT",
+            help="Meshes and landmark files in the frame of the source; without any, the "
+            "session's source mesh.",
+            show_default=False,
+        ),
+    ] = None,
+    penalty: Penalty = None,
+    components: Applied = None,
+    blend: Blend = None,
+    force: Force = False,
+) -> None:
+    """Warp meshes and landmark files as a session warps its source.
+
+    In a folder femur.ply becomes femur_warped.ply. Inputs are never replaced.
+    """
+    opened = with_options(read_session(session, meshes=()), penalty, components, blend)
+    if not inputs and opened.source is None:
+        raise PinwarpError(f"{session.name} has no source mesh: name the files to warp.")
+    sources = inputs or ([] if opened.source is None else [opened.source.path])
+    meshes = [file.path for file in (opened.source, opened.destination) if file is not None]
+    outputs = outputs_of(sources, out, kept=[session, *meshes], force=force)
+    if opened.source is not None and (axes := opened.source.mirrored):
+        opened = with_meshes(opened, [Side.SOURCE])
+        tell_notes([f"The session mirrors its source ({axes}): so are the inputs."])
+    warper = FileWarper(opened)
+    failed = 0
+    with progress_bar() as progress:
+        for file in progress.track(
+            warp_each(warper, sources, outputs), total=len(sources), description="Warping"
+        ):
+            if file.error:
+                tell_error(file.error)
+                failed += 1
+                continue
+            tell_notes(file.notes, file.source.name)
+            typer.echo(f"{file.output}: {applied_in_words(opened)}, {len(opened.pairs)} pairs")
+    if failed:
+        raise typer.Exit(BAD_USAGE)

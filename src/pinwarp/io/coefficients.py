@@ -1,0 +1,264 @@
+"""The coefficients of a warp in a file that a stranger can evaluate: JSON or NumPy's .npz."""
+
+from __future__ import annotations
+
+import json
+import math
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pinwarp.core.components import Components
+from pinwarp.core.errors import FileFormatError
+from pinwarp.core.spline import PenaltyConvention, Spline
+from pinwarp.io.atomic import atomic_path
+
+COEFFICIENT_SUFFIXES = (".json", ".npz")
+FORMAT = "pinwarp-coefficients"
+# Told apart by readers; raised when an older reader would misread.
+FORMAT_VERSION = 1
+EQUATION = (
+    "f(v) = a1 + a2 * v_x + a3 * v_y + a4 * v_z + sum over i of w_i * |u_i - v|, where v is a "
+    "place of the source, u_i are the rows of source_landmarks, w_i the rows of weights, a1 to "
+    "a4 the rows of affine, and |.| is the Euclidean length. The basis is U(r) = +r. f(v) is in "
+    "the frame and unit of the destination; with the components 'without pose' it is in the "
+    "frame of the source. No penalty and no blend is to be added: they are in the coefficients. "
+    "A mesh that is mirrored across an axis is mirrored first, about the middle of its bounds."
+)
+
+_ARRAYS = ("source_landmarks", "weights", "affine")
+_TEXTS = (
+    "unit",
+    "penalty_convention",
+    "components",
+    "source_sha256",
+    "destination_sha256",
+    "source_mirrored",
+    "destination_mirrored",
+    "pinwarp",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Coefficients:
+    """A solved warp and what explains it.
+
+    Parameters
+    ----------
+    spline
+        The warp as applied: its landmarks, weights for ``U = +r`` and affine rows ``a1 ... a4``.
+    names
+        Of the landmarks, row by row.
+    unit
+        Of both meshes.
+    components, blend
+        What of the warp this is; see :func:`pinwarp.core.components.applied`.
+    planar
+        Whether nearly planar landmarks were treated as planar.
+    source_sha256, destination_sha256
+        The hashes of the mesh files; empty where there was none.
+    source_mirrored, destination_mirrored
+        The axes across which a mesh is mirrored after reading, such as ``"x"``.
+    version
+        The pinwarp that wrote it.
+    """
+
+    spline: Spline
+    names: tuple[str, ...]
+    unit: str = ""
+    components: str = Components.FULL.value
+    blend: float = 1.0
+    planar: bool = False
+    source_sha256: str = ""
+    destination_sha256: str = ""
+    source_mirrored: str = ""
+    destination_mirrored: str = ""
+    version: str = ""
+
+
+def write_coefficients(path: str | Path, coefficients: Coefficients) -> None:
+    """Write coefficients as JSON or .npz, by the file's suffix; every number exactly.
+
+    Parameters
+    ----------
+    path
+        The file. JSON has lists of numbers, and an infinite penalty as the text ``"infinity"``;
+        .npz has arrays, and single values as arrays without dimensions. Names are the same.
+    coefficients
+        What is written.
+
+    Raises
+    ------
+    FileFormatError
+        When the suffix is another.
+    OSError
+        When the file cannot be written; an older one is untouched.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pinwarp.core.spline import factorise, solve
+    >>> spline = solve(factorise([[0, 0, 0]]), [[1, 2, 3]])
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder, "shift.json")
+    ...     write_coefficients(path, Coefficients(spline, ("apex",), "mm"))
+    ...     read_coefficients(path).spline.affine.tolist()
+    [[1.0, 2.0, 3.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    """
+    suffix = _suffix(path)
+    fields = _fields(coefficients)
+    with atomic_path(path) as temporary:
+        if suffix == ".json":
+            temporary.write_text(_json(fields), encoding="utf-8")
+        else:
+            arrays: dict[str, Any] = {key: np.array(value) for key, value in fields.items()}
+            with temporary.open("wb") as file:
+                np.savez(file, **arrays)
+
+
+def read_coefficients(path: str | Path) -> Coefficients:
+    """Read what :func:`write_coefficients` wrote.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    Coefficients
+
+    Raises
+    ------
+    FileFormatError
+        When the file is missing, of another kind, of a newer version, or damaged.
+    """
+    path = Path(path)
+    try:
+        fields = _read_json(path) if _suffix(path) == ".json" else _read_npz(path)
+        return _coefficients(fields)
+    except FileNotFoundError:
+        raise FileFormatError(path, "There is no such file.") from None
+    except (KeyError, ValueError, TypeError, OSError, EOFError, zipfile.BadZipFile) as error:
+        if isinstance(error, FileFormatError):
+            raise
+        reason = f"{error.args[0]!r} is missing" if isinstance(error, KeyError) else str(error)
+        raise FileFormatError(
+            path, f"These are no coefficients of a warp ({reason}). Export them again."
+        ) from error
+
+
+def _suffix(path: str | Path) -> str:
+    suffix = Path(path).suffix.lower()
+    if suffix not in COEFFICIENT_SUFFIXES:
+        raise FileFormatError(
+            path,
+            f"Coefficients of the type {suffix or 'without a suffix'!r} are not supported. "
+            f"Choose one of {', '.join(COEFFICIENT_SUFFIXES)}.",
+        )
+    return suffix
+
+
+def _fields(coefficients: Coefficients) -> dict[str, Any]:
+    """Return all that is written, in the order in which a person wants to read it."""
+    spline = coefficients.spline
+    penalty = spline.penalty
+    return {
+        "format": FORMAT,
+        "format_version": FORMAT_VERSION,
+        "pinwarp": coefficients.version,
+        "equation": EQUATION,
+        "unit": coefficients.unit,
+        "warping_penalty": penalty,
+        "penalty_convention": spline.convention.value,
+        "components": coefficients.components,
+        "blend": float(coefficients.blend),
+        "planar": coefficients.planar,
+        "source_sha256": coefficients.source_sha256,
+        "source_mirrored": coefficients.source_mirrored,
+        "destination_sha256": coefficients.destination_sha256,
+        "destination_mirrored": coefficients.destination_mirrored,
+        "names": list(coefficients.names),
+        "affine": spline.affine.tolist(),
+        "source_landmarks": spline.source.tolist(),
+        "weights": spline.weights.tolist(),
+    }
+
+
+def _json(fields: Mapping[str, Any]) -> str:
+    """Return JSON with a landmark per line; Python writes the shortest exact numbers."""
+    penalty = fields["warping_penalty"]
+    # JSON knows no infinity.
+    written = {**fields, "warping_penalty": "infinity" if math.isinf(penalty) else penalty}
+    lines = []
+    for key, value in written.items():
+        if isinstance(value, list):
+            rows = ",\n    ".join(json.dumps(row, ensure_ascii=False) for row in value)
+            lines.append(f"  {json.dumps(key)}: [\n    {rows}\n  ]")
+        else:
+            lines.append(f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}")
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def _read_json(path: Path) -> dict[str, Any]:
+    fields = json.loads(path.read_text(encoding="utf-8"))
+    if not isinstance(fields, dict):
+        raise ValueError("it is not an object")
+    return fields
+
+
+def _read_npz(path: Path) -> dict[str, Any]:
+    # Without pickles: a file from a stranger must not run code.
+    with path.open("rb") as content:
+        file = np.load(content, allow_pickle=False)
+        if not isinstance(file, np.lib.npyio.NpzFile):
+            raise ValueError("it holds a single array")
+        return {key: file[key].tolist() for key in file.files}
+
+
+def _coefficients(fields: Mapping[str, Any]) -> Coefficients:
+    if fields["format"] != FORMAT:
+        raise ValueError(f"its format is {fields['format']!r}")
+    if int(fields["format_version"]) > FORMAT_VERSION:
+        raise ValueError("it was written by a newer pinwarp")
+    names = tuple(str(name) for name in fields["names"])
+    arrays = {key: np.array(fields[key], dtype=np.float64) for key in _ARRAYS}
+    texts = {key: str(fields[key]) for key in _TEXTS}
+    rows = {"affine": 4, "source_landmarks": len(names), "weights": len(names)}
+    for key, array in arrays.items():
+        _check(key, array, rows[key])
+    penalty = float(fields["warping_penalty"])
+    if not penalty >= 0:
+        raise ValueError(f"the penalty is {penalty}")
+    spline = Spline(
+        source=arrays["source_landmarks"],
+        weights=arrays["weights"],
+        affine=arrays["affine"],
+        penalty=penalty,
+        convention=PenaltyConvention(texts["penalty_convention"]),
+    )
+    return Coefficients(
+        spline=spline,
+        names=names,
+        unit=texts["unit"],
+        components=Components(texts["components"]).value,
+        blend=float(fields["blend"]),
+        planar=bool(fields["planar"]),
+        source_sha256=texts["source_sha256"],
+        destination_sha256=texts["destination_sha256"],
+        source_mirrored=texts["source_mirrored"],
+        destination_mirrored=texts["destination_mirrored"],
+        version=texts["pinwarp"],
+    )
+
+
+def _check(key: str, array: NDArray[np.float64], rows: int) -> None:
+    if array.shape != (rows, 3):
+        raise ValueError(f"{key!r} has the shape {array.shape} instead of ({rows}, 3)")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{key!r} has numbers that are not finite")

@@ -1,0 +1,153 @@
+"""MeshLab's picked points, ``.pp``, an XML file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from xml.parsers import expat
+from xml.sax.saxutils import quoteattr
+
+from pinwarp.core.errors import FileFormatError
+from pinwarp.core.landmarks import Landmark, Side
+from pinwarp.io.csv_cells import YES_NO, coordinates_text, shortened
+from pinwarp.io.landmark_formats.lines import landmark_on, one_line, three_numbers
+from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
+from pinwarp.io.landmark_formats.writing import Written
+
+NAME = "MeshLab .pp"
+SUFFIXES = (".pp",)
+HOLDS_PAIRS = False
+
+_SIGNATURE = re.compile(r"<(!DOCTYPE\s+)?PickedPoints\b")
+_DEEPEST = 20
+_AGAIN = "Save it again in MeshLab."
+
+
+def matches(head: str) -> bool:
+    """Whether the first element is that of picked points.
+
+    Examples
+    --------
+    >>> matches("<!DOCTYPE PickedPoints>"), matches("<html>")
+    (True, False)
+    """
+    return _SIGNATURE.search(head) is not None
+
+
+def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
+    """Read picked points; those that are not active have no position.
+
+    Parameters
+    ----------
+    path
+        The file, for the messages.
+    text
+        What is in it. Entities of its own are refused: they can make a small file endless.
+    side
+        The side the landmarks belong to.
+
+    Returns
+    -------
+    LandmarkReading
+        The format says neither a unit nor a frame.
+
+    Raises
+    ------
+    FileFormatError
+        When it is not XML, or no landmark could be read.
+
+    Examples
+    --------
+    >>> text = '<PickedPoints><point y="2" x="1" z="3" active="1" name="p1"/></PickedPoints>'
+    >>> read("a.pp", text, Side.SOURCE).landmarks[0].source
+    (1.0, 2.0, 3.0)
+    """
+    gathering = Gathering(path)
+    parser = expat.ParserCreate()
+    lines = text.split("\n")
+    number = depth = 0
+
+    def begin(tag: str, attributes: Mapping[str, str]) -> None:
+        nonlocal number, depth
+        depth += 1
+        if depth > _DEEPEST:
+            raise FileFormatError(
+                path,
+                f"Its elements are nested too deeply for landmarks. {_AGAIN}",
+                parser.CurrentLineNumber,
+            )
+        if tag == "point":
+            line = parser.CurrentLineNumber
+            words = lines[line - 1] if line <= len(lines) else ""
+            gathering.take(line, words, _landmark, attributes, side, f"landmark_{number}")
+            number += 1
+
+    def end(_tag: str) -> None:
+        nonlocal depth
+        depth -= 1
+
+    def refuse(*_arguments: object) -> None:
+        raise FileFormatError(
+            path,
+            f"It declares entities of its own, which picked points have no use for. {_AGAIN}",
+            parser.CurrentLineNumber,
+        )
+
+    parser.StartElementHandler = begin
+    parser.EndElementHandler = end
+    parser.EntityDeclHandler = refuse
+    try:
+        parser.Parse(text, True)
+    except expat.ExpatError as error:
+        reason = expat.ErrorString(error.code)
+        raise FileFormatError(
+            path, f"This is not XML, or it was cut off ({reason}). {_AGAIN}", error.lineno
+        ) from None
+    return gathering.reading(
+        NAME, 'points as in: <point x="1.5" y="2" z="-3" active="1" name="fovea"/>'
+    )
+
+
+def _landmark(attributes: Mapping[str, str], side: Side, default: str) -> Landmark:
+    text = attributes.get("active", "1").strip().lower()
+    active = YES_NO.get(text)
+    if active is None:
+        raise ValueError(f"'active' is {shortened(text)} and not 1 or 0")
+    words = [attributes.get(axis, "").strip() for axis in "xyz"]
+    position = three_numbers(words) if active else None
+    return landmark_on(side, attributes.get("name", "").strip() or default, position)
+
+
+def text_of(landmarks: Sequence[Landmark], side: Side | None, unit: str, title: str) -> Written:
+    """Return the picked points of one side; those that are not placed are not active.
+
+    Parameters
+    ----------
+    landmarks
+        The landmarks.
+    side
+        The side to write.
+    unit, title
+        Not used: the format has a place for neither.
+
+    Examples
+    --------
+    >>> print(text_of([Landmark("a & b", (1, 2, 3))], Side.SOURCE, "mm", "").text, end="")
+    <!DOCTYPE PickedPoints>
+    <PickedPoints>
+     <point x="1.0" y="2.0" z="3.0" active="1" name="a &amp; b"/>
+    </PickedPoints>
+    """
+    del unit, title
+    assert side is not None, "pairs are refused before"
+    lines = ["<!DOCTYPE PickedPoints>\n<PickedPoints>\n"]
+    for landmark in landmarks:
+        position = landmark.position(side)
+        x, y, z = coordinates_text(position or (0.0, 0.0, 0.0))
+        # Two characters that XML does not know at all.
+        name = re.sub("[\ufffe\uffff]", "\ufffd", one_line(landmark.name))
+        name = quoteattr(name, {'"': "&quot;"})
+        active = int(position is not None)
+        lines.append(f' <point x="{x}" y="{y}" z="{z}" active="{active}" name={name}/>\n')
+    return Written("".join([*lines, "</PickedPoints>\n"]))

@@ -1,0 +1,96 @@
+"""Manifests as people write them, and what is wrong with them."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from pinwarp.core.components import Components
+from pinwarp.core.errors import FileFormatError
+from pinwarp.io.manifest import read_manifest
+
+HEADER = "name,destination_landmarks"
+
+
+def read(tmp_path: Path, text: str):
+    path = tmp_path / "study.csv"
+    path.write_text(text)
+    return read_manifest(path)
+
+
+def problem(tmp_path: Path, text: str) -> FileFormatError:
+    with pytest.raises(FileFormatError) as found:
+        read(tmp_path, text)
+    assert found.value.path == tmp_path / "study.csv"
+    return found.value
+
+
+def test_paths_are_seen_from_the_folder_of_the_manifest(tmp_path, monkeypatch):
+    monkeypatch.chdir("/")
+    absolute = tmp_path / "elsewhere" / "b.csv"
+    anna, ben = read(
+        tmp_path,
+        f"{HEADER},destination_mesh\nanna,marks/a.csv,../a.stl\n\n# a remark\nben,{absolute},\n",
+    ).subjects
+    assert anna.destination_landmarks == tmp_path / "marks" / "a.csv"
+    assert anna.destination_mesh == tmp_path.parent / "a.stl"
+    assert (ben.destination_landmarks, ben.destination_mesh) == (absolute, None)
+    assert (anna.line, ben.line) == (2, 5)
+
+
+def test_columns_come_in_any_order_and_case_and_others_are_named(tmp_path):
+    manifest = read(
+        tmp_path, "Age,Penalty,Destination Landmarks,NAME,components\n7,inf,a.csv,anna,Without-Pose"
+    )
+    (anna,) = manifest.subjects
+    assert anna.penalty == math.inf
+    assert anna.components is Components.WITHOUT_POSE
+    assert manifest.unused == ("age",)
+
+
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_spreadsheets_may_write_other_separators_and_decimal_commas(tmp_path, separator):
+    rows = [["name", "destination_landmarks", "penalty"], ["anna", "a.csv", "0.5"]]
+    if separator == ";":
+        rows[1][2] = "0,5"
+    text = "\r\n".join(separator.join(row) for row in rows)
+    assert read(tmp_path, "\ufeff" + text).subjects[0].penalty == 0.5
+    two = "\n".join(separator.join(row[:2]) for row in rows)
+    assert read(tmp_path, two).subjects[0].penalty is None
+
+
+def test_a_name_that_was_quoted_against_formulas_is_itself_again(tmp_path):
+    assert read(tmp_path, f"{HEADER}\n'-7,a.csv\n").subjects[0].name == "-7"
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ("name,landmarks\nanna,a.csv\n", 1, "column 'destination_landmarks' is missing"),
+        ("# only a remark\n", 1, "column 'name' is missing"),
+        ("name,name,destination_landmarks\n", 1, "'name' is there twice"),
+        (f"{HEADER}\nanna,a.csv\nAnna,b.csv\n", 3, "was used in line 2"),
+        (f"{HEADER}\n\n../anna,a.csv\n", 3, "holds '/'"),
+        (f"{HEADER}\na\\b,a.csv\n", 2, "holds '\\\\'"),
+        (f"{HEADER}\n..,a.csv\n", 2, "No file can be called '..'"),
+        (f"{HEADER}\nCON,a.csv\n", 2, "No file can be called 'CON'"),
+        (f"{HEADER}\n{'a' * 300},a.csv\n", 2, "too long"),
+        (f"{HEADER}\n,a.csv\n", 2, "The name is missing"),
+        (f"{HEADER}\nanna\n", 2, "'anna' has no destination_landmarks"),
+        (f"{HEADER}\nanna,a.csv,surplus\n", 2, "3 cells for 2 columns"),
+        (f"{HEADER},penalty\nanna,a.csv,-1\n", 2, "is negative"),
+        (f"{HEADER},penalty\nanna,a.csv,much\n", 2, "'much' is not a number"),
+        (f"{HEADER},components\nanna,a.csv,elastic\n", 2, "'elastic' are none of full"),
+        (f'{HEADER}\n"anna,a.csv\n', 2, "quotes do not match"),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_line(tmp_path, text, line, words):
+    error = problem(tmp_path, text)
+    assert words in error.reason
+    assert error.line == line
+
+
+def test_a_manifest_without_subjects_says_so(tmp_path):
+    assert "no subject" in problem(tmp_path, f"{HEADER}\n").reason
