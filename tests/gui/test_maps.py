@@ -328,6 +328,14 @@ def test_a_fold_is_told_in_the_status_bar_and_a_click_selects_the_landmarks(fold
     assert folded.told[-1] == ()
 
 
+def test_a_fold_stands_in_the_list_behind_the_swap_that_makes_it(folded):
+    kinds = [row.found.finding.kind for row in folded.window.findings.rows]
+    assert kinds[0] is FindingKind.SWAPPED
+    assert FindingKind.FOLD in kinds
+    folded.trigger("undo")
+    assert folded.window.findings.rows == []
+
+
 def test_a_fold_shines_through_the_bone_with_and_without_a_map_and_goes_with_its_cause(folded):
     folds = there(folded)._folds
     QTest.mouseClick(folded.window.maps.fold_note, Qt.MouseButton.LeftButton)

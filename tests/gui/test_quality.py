@@ -158,8 +158,9 @@ def test_the_names_stay_readable_in_the_dock_as_it_opens(sample):
 
 
 def test_a_swap_is_named_repaired_by_one_click_and_brought_back_by_undo(swapped):
-    (row,) = swapped.findings.rows
-    assert swapped.findings.header.text() == "1 to check"
+    row, fold = swapped.findings.rows
+    assert swapped.findings.header.text() == "2 to check"
+    assert fold.found.finding.kind is FindingKind.FOLD, "which the swap makes"
     assert set(row.found.names) == SWAPPED
     assert all(name in swapped.said_by(row) for name in SWAPPED)
     before = swapped.session
@@ -172,7 +173,7 @@ def test_a_swap_is_named_repaired_by_one_click_and_brought_back_by_undo(swapped)
 
 
 def test_a_second_click_does_not_swap_back(swapped):
-    (row,) = swapped.findings.rows
+    row, _fold = swapped.findings.rows
     for _ in range(2):
         # At once, before the pairs are judged anew.
         QTest.mouseClick(row.remedy, LEFT, NO_KEY, row.remedy.rect().center())

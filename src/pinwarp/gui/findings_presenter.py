@@ -12,12 +12,13 @@ from pinwarp.core.mirror import axis_to_mirror
 from pinwarp.gui.landmark_model import LandmarkModel
 from pinwarp.gui.landmark_panel import LandmarkPanel
 from pinwarp.gui.landmark_requests import LandmarkRequests
+from pinwarp.gui.map_presenter import MapPresenter
 from pinwarp.gui.quality_presenter import QualityPresenter
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.naming import in_words
 from pinwarp.session.pair_names import pair_names
-from pinwarp.session.quality import NamedFinding, Quality
+from pinwarp.session.quality import NamedFinding, Quality, named_findings
 
 # These are about the penalty and the solve, and told where the penalty is set.
 _TOLD_ELSEWHERE = (FindingKind.NEARLY_PLANAR, FindingKind.POLE)
@@ -30,8 +31,8 @@ class FindingsPresenter:
     ----------
     editor
         The truth.
-    quality
-        Where the figures come from.
+    quality, maps
+        Where the figures and the folds come from.
     model, panel
         The table and the list below it.
     actions
@@ -46,6 +47,7 @@ class FindingsPresenter:
         self,
         editor: Editor,
         quality: QualityPresenter,
+        maps: MapPresenter,
         model: LandmarkModel,
         panel: LandmarkPanel,
         actions: Mapping[str, QAction],
@@ -54,6 +56,7 @@ class FindingsPresenter:
     ) -> None:
         self._editor = editor
         self._source = quality
+        self._maps = maps
         self._model = model
         self._panel = panel
         self._actions = actions
@@ -70,6 +73,7 @@ class FindingsPresenter:
             lambda _checked=False: requests.swap_destinations(editor.selection.names)
         )
         quality.quality_changed.connect(self._on_quality)
+        maps.folds_changed.connect(self._on_folds)
         editor.session_changed.connect(self._on_session)
         editor.selection_changed.connect(self._on_selection)
         self._on_session()
@@ -77,6 +81,7 @@ class FindingsPresenter:
     def shut_down(self) -> None:
         """Let go of the editor and the figures."""
         self._source.quality_changed.disconnect(self._on_quality)
+        self._maps.folds_changed.disconnect(self._on_folds)
         self._editor.session_changed.disconnect(self._on_session)
         self._editor.selection_changed.disconnect(self._on_selection)
 
@@ -86,17 +91,24 @@ class FindingsPresenter:
         self._model.show_quality(quality)
         self._show()
 
+    def _on_folds(self, _folds: object) -> None:
+        self._show()
+
     def _on_session(self, _changed: object = None) -> None:
         self._show()
         self._on_selection()
 
     def _show(self) -> None:
-        session, quality = self._editor.session, self._source.quality
-        key = (session.landmarks, session.unit, session.source, quality)
+        session, quality, survey = self._editor.session, self._source.quality, self._maps.survey
+        key = (session.landmarks, session.unit, session.source, quality, survey)
         if key == self._shown_for:
             return
         self._shown_for = key
         found = quality.findings_in(session) if quality is not None else ()
+        if survey is not None:
+            found += named_findings(survey.findings, survey.result.inputs, session)
+        # A stable sort: folds come behind what causes them, what is only isolated last.
+        found = tuple(sorted(found, key=lambda one: not one.finding.is_grave))
         self._found = tuple(one for one in found if one.finding.kind not in _TOLD_ELSEWHERE)
         self._model.show_findings(self._found)
         self._panel.findings.show_findings(self._found, self._mirror_axis(quality))

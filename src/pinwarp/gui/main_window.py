@@ -79,6 +79,7 @@ class MainWindow(WindowFrame):
         self.findings_presenter = FindingsPresenter(
             self.editor,
             self.quality,
+            self.maps,
             self.model,
             self.landmarks,
             self.actions_by_key,

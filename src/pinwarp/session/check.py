@@ -17,7 +17,7 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import Spline
 from pinwarp.core.surface_distance import DistanceFigures, SurfaceIndex
 from pinwarp.io.meshes import MeshFile
-from pinwarp.session.quality import NamedFinding, quality_of
+from pinwarp.session.quality import NamedFinding, named_findings, quality_of
 from pinwarp.session.results import WarpInputs, WarpSolver
 from pinwarp.session.session import Session
 
@@ -183,7 +183,9 @@ def check(session: Session) -> Check:
     source, destination = (session.mesh(side) for side in Side)
     folds = None if source is None else _folds(result.shown, source)
     findings = [*quality.findings_in(session)]
-    findings += [] if folds is None else [_named(x.finding, session) for x in folds.patches]
+    if folds is not None:
+        patches = (patch.finding for patch in folds.patches)
+        findings += named_findings(patches, result.inputs, session)
     return Check(
         pairs=tuple(
             PairFigures(name, *(float(x) for x in row))
@@ -201,12 +203,6 @@ def check(session: Session) -> Check:
         findings=tuple(sorted(findings, key=lambda named: not is_flagged(named.finding))),
         notes=_about_files(session),
     )
-
-
-def _named(finding: Finding, session: Session) -> NamedFinding:
-    names = [pair.name for pair in session.pairs]
-    concerned = tuple(names[row] for row in finding.rows)
-    return NamedFinding(finding, concerned, finding.describe(names, session.unit))
 
 
 def _folds(spline: Spline, mesh: Mesh) -> Folds:

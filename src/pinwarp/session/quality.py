@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -107,19 +107,44 @@ class Quality:
         >>> judged.findings_in(session)[0].sentence
         'a and b lie at the same place on the source but 2 mm apart on the destination.'
         """
-        names = pair_names(self.inputs, session)
-        words = [name or "" for name in names]
-        named = []
-        for finding in self.findings:
-            concerned = tuple(name for row in finding.rows if (name := names[row]) is not None)
-            if len(concerned) == len(finding.rows):
-                sentence = finding.describe(words, session.unit)
-                named.append(NamedFinding(finding, concerned, sentence))
-        return tuple(named)
+        return named_findings(self.findings, self.inputs, session)
 
     def finding_rows(self, row: int) -> tuple[Finding, ...]:
         """Return the findings that a pair has a part in."""
         return tuple(finding for finding in self.findings if row in finding.rows)
+
+
+def named_findings(
+    findings: Iterable[Finding], inputs: WarpInputs, session: Session
+) -> tuple[NamedFinding, ...]:
+    """Return findings by name, as far as their pairs are still there.
+
+    Parameters
+    ----------
+    findings
+        About the pairs of a warp.
+    inputs
+        What that warp was computed from.
+    session
+        The session as it is now.
+
+    Examples
+    --------
+    >>> from pinwarp.core.landmarks import Landmark
+    >>> session = Session(landmarks=(Landmark("fovea", (0, 0, 0), (1, 0, 0)),))
+    >>> finding = Finding(FindingKind.ISOLATED, (0,), 70.0, (3.0,))
+    >>> [x.names for x in named_findings([finding], WarpInputs.of(session), session)]
+    [('fovea',)]
+    """
+    names = pair_names(inputs, session)
+    words = [name or "" for name in names]
+    named = []
+    for finding in findings:
+        concerned = tuple(name for row in finding.rows if (name := names[row]) is not None)
+        if len(concerned) == len(finding.rows):
+            sentence = finding.describe(words, session.unit)
+            named.append(NamedFinding(finding, concerned, sentence))
+    return tuple(named)
 
 
 def quality_of(result: WarpResult) -> Quality | None:

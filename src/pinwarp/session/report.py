@@ -50,7 +50,8 @@ def report_of(
     """
     names = [pair.name for pair in session.pairs]
     unit = session.unit
-    found = (*survey.findings, *quality.findings)
+    # A stable sort: folds come behind what causes them, what is only isolated last.
+    found = sorted((*quality.findings, *survey.findings), key=lambda one: not one.is_grave)
     return Report(
         title=title,
         made=f"Made by pinwarp {pinwarp.__version__} on {made:%d %B %Y at %H:%M} "
