@@ -40,7 +40,7 @@ system-with-screen:
 	@.make/system-packages --screen
 
 check: lint types layers
-	$(SCREEN) $(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto --dist worksteal
 
 lint:
 	$(BIN)/ruff check

@@ -70,16 +70,20 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(prog="make bench")
     parser.add_argument("--json", type=Path, help="write the figures to this file as well")
-    parser.add_argument("--only", nargs="*", help="solve, evaluate, live, memory, frames")
+    parser.add_argument(
+        "--only", nargs="*", help="solve, evaluate, live, quality, memory, frames, refresh"
+    )
     options = parser.parse_args()
-    from tests.benchmarks import core, frames
+    from tests.benchmarks import core, frames, quality
 
     parts = {
         "solve": ("One solve", core.solving),
         "evaluate": ("Evaluation at all vertices", core.evaluating),
         "live": ("What the hand feels, against the fastest peer's solve + evaluate", core.living),
+        "quality": ("Is this warp right?", quality.judging),
         "memory": ("Peak memory beyond the meshes (MB)", core.remembering),
         "frames": ("In the window", frames.framing),
+        "refresh": ("Figures after a drag, 200 pairs", frames.refreshing),
     }
     console = Console(width=140)
     about = machine()

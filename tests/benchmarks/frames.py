@@ -42,7 +42,50 @@ def framing() -> Iterator[dict[str, Any]]:
                 application.processEvents()
 
 
-def _window(folder: Path, triangles: int) -> MainWindow:
+def refreshing() -> Iterator[dict[str, Any]]:
+    """Drop a landmark and wait for the table's and the curve's new figures."""
+    application = make_application()
+    with tempfile.TemporaryDirectory() as folder:
+        window = _window(Path(folder), 10_000, pairs=200)
+        waits, gaps = [], []
+        arrived: list[float] = []
+        window.quality.quality_changed.connect(lambda _quality: arrived.append(time.perf_counter()))
+        try:
+            widget, path = _landmark_drag(window)
+            for turn in range(9):
+                _mouse(widget, QEvent.Type.MouseButtonPress, path(0.0))
+                for step in range(1, 6):
+                    _mouse(widget, QEvent.Type.MouseMove, path(0.1 * step + 0.01 * turn))
+                    QApplication.processEvents()
+                time.sleep(0.3)
+                arrived.clear()
+                begin = last = time.perf_counter()
+                _mouse(widget, QEvent.Type.MouseButtonRelease, path(0.5))
+                longest = 0.0
+                while not (arrived and window.is_settled):
+                    QApplication.processEvents()
+                    now = time.perf_counter()
+                    longest, last = max(longest, now - last), now
+                    time.sleep(0.0005)
+                waits.append(arrived[-1] - begin)
+                gaps.append(longest)
+                window.editor.undo()
+                _settle(window)
+        finally:
+            window.editor.replace_all(window.editor.session, None)
+            window.close()
+            window.deleteLater()
+            application.processEvents()
+    yield {
+        "what": "figures after a drop",
+        "pairs": 200,
+        "median (ms)": float(np.median(waits)) * 1e3,
+        "longest (ms)": max(waits) * 1e3,
+        "longest gap, median (ms)": float(np.median(gaps)) * 1e3,
+    }
+
+
+def _window(folder: Path, triangles: int, pairs: int = 50) -> MainWindow:
     side = int(np.sqrt(triangles / 2)) + 1
     bone = pv.ParametricEllipsoid(30, 40, 210, u_res=side, v_res=side).clean().triangulate()
     source, destination = folder / f"s{triangles}.ply", folder / f"d{triangles}.ply"
@@ -58,13 +101,13 @@ def _window(folder: Path, triangles: int) -> MainWindow:
     window.documents.open_mesh(Side.DESTINATION, destination)
     _settle(window)
     places = np.asarray(bone.points, dtype=float)[
-        np.random.default_rng(0).choice(bone.n_points, 50, replace=False)
+        np.random.default_rng(0).choice(bone.n_points, pairs, replace=False)
     ]
-    pairs = [
+    landmarks = [
         Landmark(f"landmark_{i}", tuple(u), tuple(v))
         for i, (u, v) in enumerate(zip(places.tolist(), true_warp(places).tolist(), strict=True))
     ]
-    window.editor.commit(edits.import_pairs(window.editor.session, pairs), "Import pairs")
+    window.editor.commit(edits.import_pairs(window.editor.session, landmarks), "Import pairs")
     _settle(window)
     return window
 
