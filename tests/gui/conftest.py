@@ -241,9 +241,9 @@ def nothing_leaks(qapp, request):
 
 
 @pytest.fixture
-def state_folder(tmp_path) -> Path:
+def state_folder(tmp_path_factory) -> Path:
     """Where the windows of a test keep their unsaved work: never in the user's own folder."""
-    return tmp_path / "state"
+    return tmp_path_factory.mktemp("state")
 
 
 def open_window(dialogs: ScriptedDialogs, folder: Path, state_folder: Path) -> MainWindow:

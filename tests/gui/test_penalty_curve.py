@@ -94,14 +94,15 @@ def test_a_click_on_the_curve_takes_the_penalty_there(user, panel):
 
 def test_hovering_tells_the_figures_there(user, panel):
     plot = panel.plot
+    resting = plot.grab().toImage()
     QTest.mouseMove(plot, QPoint(round(plot.place_of(0.5)), plot.height() // 2))
-    before = plot.grab().toImage()
+    user.qtbot.waitUntil(lambda: plot.grab().toImage() != resting)
     reading = plot.plotted.reading(plot.share_at(plot.place_of(0.5)))
     assert "flexibility 50%" in reading
     assert "leave-one-out 4.3 mm" in reading
     assert "residual 1.51 mm" in reading
     QTest.mouseMove(user.window.table, QPoint(5, 5))
-    user.qtbot.waitUntil(lambda: plot.grab().toImage() != before)
+    user.qtbot.waitUntil(lambda: plot.grab().toImage() == resting)
 
 
 def test_the_suggested_penalty_is_taken_by_its_button_and_undone(user, noisy_panel):
