@@ -7,6 +7,7 @@ from pathlib import Path
 
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.gui.file_tasks import LANDMARK_FILES, MESH_FILES, FileTasks, Progress
+from pinwarp.gui.lengths import format_length
 from pinwarp.io.landmark_files import write_landmarks
 from pinwarp.io.meshes import write_mesh
 from pinwarp.session.editor import Editor
@@ -83,7 +84,7 @@ class Exports:
 
         def arrived(_nothing: None) -> None:
             pairs = len(session.pairs)
-            penalty = f"penalty {session.warping_penalty:.6g}"
+            penalty = f"penalty {format_length(session.warping_penalty, session.unit, 6)}"
             what = applied_in_words(session)
             self._tasks.said.emit(f"Exported {path.name}: {what} ({pairs} pairs, {penalty})")
 

@@ -122,14 +122,19 @@ def from_record(
 def _as_seen(
     file: MeshFile | None, reference: MeshReference | None
 ) -> MeshFile | MeshReference | None:
-    """Return a mesh as the session sees it: in a mirror, where it says so."""
-    if file is None or reference is None or not reference.mirrored:
+    """Return a mesh as the session sees it: in another unit or in a mirror, where it says so."""
+    if file is None or reference is None:
         return file or reference
-    mesh = mirrored_mesh(file.mesh, reference.mirrored)
-    return replace(file, mesh=mesh, mirrored=reference.mirrored)
+    mesh = file.mesh
+    if reference.scaled != 1:
+        mesh = mesh.with_vertices(reference.scaled * mesh.vertices)
+    if reference.mirrored:
+        mesh = mirrored_mesh(mesh, reference.mirrored)
+    return replace(file, mesh=mesh, mirrored=reference.mirrored, scaled=reference.scaled)
 
 
 def _reference(file: MeshFile | MeshReference | None) -> MeshReference | None:
     if isinstance(file, MeshFile):
-        return MeshReference(file.path, file.sha256, len(file.mesh.vertices), file.mirrored)
+        count = len(file.mesh.vertices)
+        return MeshReference(file.path, file.sha256, count, file.mirrored, file.scaled)
     return file
