@@ -34,6 +34,9 @@ from pinwarp.session.mesh_units import scale_side, size_ratio, unit_factor
 from pinwarp.session.recovery import OtherWindow
 from pinwarp.session.session import Session
 
+# By what a length in metres is multiplied.
+_SMALLER = {100.0: "centimetres", 1000.0: "millimetres"}
+
 
 @dataclass(frozen=True)
 class Opening:
@@ -185,9 +188,9 @@ class Documents:
         answer = self._tasks.dialogs.ask_choice(
             title,
             text,
-            "One seems to be in metres or centimetres and the other in millimetres. Scaling takes "
-            "the landmarks of that side along; the file stays as it is, and the session remembers "
-            f"the factor.\n\n{left}",
+            f"One seems to be in metres and the other in {_SMALLER[max(factor, 1 / factor)]}. "
+            "Scaling takes the landmarks of that side along; the file stays as it is, and the "
+            f"session remembers the factor.\n\n{left}",
             [
                 *(f"Scale the {each.value.capitalize()} {_by(factors[each])}" for each in sides),
                 "Leave Both",

@@ -42,6 +42,7 @@ from pinwarp.session.session import Session
 
 _SIZE = QSize(720, 600)
 _MOST_SKIPPED_ROWS = 4
+_LEAST_ROWS = 6
 
 
 class ImportDialog(QDialog):
@@ -99,6 +100,9 @@ class ImportDialog(QDialog):
         self.table.setWordWrap(False)
         self.table.verticalHeader().hide()
         self.table.verticalHeader().setDefaultSectionSize(self.fontMetrics().height() + 7)
+        rows = self.table.verticalHeader().defaultSectionSize()
+        # Also under several questions there is something to see.
+        self.table.setMinimumHeight(_LEAST_ROWS * rows)
         self.table.setAccessibleName("Landmarks of the file")
         header = self.table.horizontalHeader()
         header.setHighlightSections(False)

@@ -89,6 +89,9 @@ class LandmarkImports:
             }
 
         def arrived(fits: Mapping[Side, tuple[Fit, ...]]) -> None:
+            if not all(self._is_still(side, mesh) for side, mesh in meshes.items()):
+                self._compare(arriving, asking)
+                return
             found = Arriving(arriving.path, reading, arriving.side, fits)
             self._waiting.append((found, asking))
             self._decide_all()
@@ -157,7 +160,7 @@ class LandmarkImports:
 
         self._tasks.run(f"Comparing the {side.value} landmarks", compare, arrived)
 
-    def _is_still(self, side: Side, mesh: Mesh) -> bool:
+    def _is_still(self, side: Side, mesh: Mesh | None) -> bool:
         return self._editor.committed.mesh(side) is mesh
 
     def _offer(self, side: Side, fits: tuple[Fit, ...], frame: str = "") -> None:

@@ -247,7 +247,8 @@ class LandmarkModel(QAbstractTableModel):
         title = shown.short_title or shown.title
         if not shown.is_length:
             return title
-        unit = self._session.unit if shown.side is None else self._units[shown.side]
+        # What the warp misses is measured on the destination.
+        unit = self._units[shown.side or Side.DESTINATION]
         return f"{title}\n{unit}" if unit else title
 
     def headerData(self, section: int, orientation: Qt.Orientation, role: int = 0) -> Any:

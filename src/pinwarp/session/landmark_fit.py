@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pinwarp.core.kernel import LARGEST_COORDINATE
 from pinwarp.core.landmarks import Landmark, Side, flipped, positions, scaled
 from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.session.session import Session
@@ -133,6 +134,8 @@ def fits_of(landmarks: Iterable[Landmark], side: Side, index: SurfaceIndex) -> t
     [False, True]
     """
     places = positions([x for x in landmarks if x.position(side) is not None], side)
+    # Times 1000 it must still be a place.
+    places = places[(np.abs(places) < LARGEST_COORDINATE / _THOUSAND).all(axis=1)]
     if not len(places):
         return ()
     size = index.mesh.diagonal
@@ -145,7 +148,7 @@ def fits_of(landmarks: Iterable[Landmark], side: Side, index: SurfaceIndex) -> t
             if not flips and factor == 1:
                 continue
             read = factor * places * ([-1, -1, 1] if flips else [1, 1, 1])
-            if not np.isfinite(read).all() or (factor != 1 and not _spread_suits(read, size)):
+            if factor != 1 and not _spread_suits(read, size):
                 continue
             distance = _median(index, read)
             if distance <= FITTING * size and SHARPLY * distance < stored.distance:
