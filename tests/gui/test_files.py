@@ -202,7 +202,7 @@ def test_the_warped_mesh_is_exported_as_it_is_shown(user, tmp_path):
     shown = user.window.viewports[DESTINATION].overlay_points
     assert np.allclose(exported.vertices, shown, atol=1e-3)
     assert (
-        "Exported warped.ply: the full warp (16 pairs, penalty 0)"
+        "Exported warped.ply: the full warp (16 pairs, penalty 0 mm)"
         in user.window.statusBar().currentMessage()
     )
 
