@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import gc
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from qtpy.QtCore import QEvent, QPoint, QPointF, QSettings, Qt
+from qtpy.QtCore import QEvent, QPoint, QPointF, QSettings, Qt, QTimer
 from qtpy.QtTest import QTest
 from qtpy.QtWidgets import QApplication
 from vtkmodules.vtkCommonCore import vtkObjectBase
@@ -16,6 +17,7 @@ from vtkmodules.vtkCommonCore import vtkObjectBase
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.app import make_application
 from pinwarp.gui.dialogs import Answer, Existing, LostAnswer, OpenTwice, Overwrite
+from pinwarp.gui.import_dialog import ImportDialog
 from pinwarp.gui.main_window import MainWindow
 from pinwarp.io.samples import assets_folder, sample_session
 from pinwarp.session.recovery import LostWork
@@ -52,6 +54,10 @@ class ScriptedDialogs:
         self.open_twice_questions: list[tuple[str, str]] = []
         self.overwrite = Overwrite.CANCEL
         self.overwrite_questions: list[tuple[str, str]] = []
+        # What a user does with each import dialog that opens; it is rejected after that.
+        self.at_import: list[Callable[[ImportDialog], None]] = []
+        self.choices: list[int] = []
+        self.choice_questions: list[tuple[str, str, str, list[str]]] = []
         self.errors: list[tuple[str, str]] = []
         self.told: list[tuple[str, str, str]] = []
 
@@ -93,6 +99,27 @@ class ScriptedDialogs:
     def ask_overwrite(self, name, reason):
         self.overwrite_questions.append((name, reason))
         return self.overwrite
+
+    def ask_import(self, session, arriving):
+        assert self.at_import, "nobody expected to be asked about an import"
+        use = self.at_import.pop(0)
+        dialog = ImportDialog(session, arriving, QApplication.activeWindow())
+
+        def act():
+            try:
+                use(dialog)
+            finally:
+                # Else a failed test would wait for ever.
+                dialog.done(dialog.result())
+
+        QTimer.singleShot(50, dialog, act)
+        accepted = dialog.exec()
+        dialog.deleteLater()
+        return dialog.choice if accepted else None
+
+    def ask_choice(self, title, text, more, labels):
+        self.choice_questions.append((title, text, more, list(labels)))
+        return self.choices.pop(0) if self.choices else len(labels) - 1
 
     def tell_error(self, title, text):
         self.errors.append((title, text))

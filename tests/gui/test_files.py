@@ -62,18 +62,6 @@ def test_a_mesh_dropped_on_a_viewport_opens_on_that_side(user):
     assert user.session.source is None
 
 
-def test_meshes_of_different_units_are_noticed(user, shared_data):
-    folder = shared_data / "msk-morph-pelvis"
-    user.window.documents.open_mesh(SOURCE, folder / "template_pelvis_r.stl")
-    user.settle()
-    assert user.dialogs.told == []
-    user.window.documents.open_mesh(DESTINATION, folder / "target_pelvis_r.stl")
-    user.settle()
-    title, text, _ = user.dialogs.told[0]
-    assert title == "Different units?"
-    assert "destination is 1,0" in text or "destination is 9" in text
-
-
 def test_two_meshes_dropped_together_fill_both_sides(user):
     folder = assets_folder()
     drop(user.window.viewports[SOURCE], folder / "femur_generic.ply", folder / "femur_subject.ply")
@@ -124,17 +112,6 @@ def test_a_dropped_file_of_another_kind_gets_a_message(user, tmp_path):
     drop(user.window.viewports[SOURCE], path)
     user.settle()
     assert "notes.docx" in user.dialogs.errors[0][1]
-
-
-def test_skipped_lines_of_an_import_are_reported_with_their_number(user, tmp_path):
-    path = tmp_path / "bone.landmarks.csv"
-    path.write_text("name,x,y,z\nfovea,1,2,3\nbroken,1,two,3\n")
-    user.dialogs.opens = [path]
-    user.trigger("import_source")
-    assert [x.name for x in user.session.landmarks] == ["fovea"]
-    _, text, details = user.dialogs.told[0]
-    assert "1 line" in text
-    assert "Line 3" in details
 
 
 def test_a_bad_mesh_gives_a_message_and_changes_nothing(user, tmp_path):
@@ -225,7 +202,7 @@ def test_the_warped_mesh_is_exported_as_it_is_shown(user, tmp_path):
     shown = user.window.viewports[DESTINATION].overlay_points
     assert np.allclose(exported.vertices, shown, atol=1e-3)
     assert (
-        "Exported warped.ply: the full warp (16 pairs, penalty 0)"
+        "Exported warped.ply: the full warp (16 pairs, penalty 0 mm)"
         in user.window.statusBar().currentMessage()
     )
 

@@ -210,15 +210,19 @@ def _turned(position: Position) -> Position:
     return (-x, -y, z)
 
 
-def scaled(landmarks: Iterable[Landmark], factor: float) -> tuple[Landmark, ...]:
+def scaled(
+    landmarks: Iterable[Landmark], factor: float, side: Side | None = None
+) -> tuple[Landmark, ...]:
     """Multiply every position that is there, as a change of unit does.
 
     Parameters
     ----------
     landmarks
-        Both sides of them are scaled.
+        Those without a position there stay as they are.
     factor
         1000 from metres to millimetres.
+    side
+        The side to scale; None scales both.
 
     Raises
     ------
@@ -232,9 +236,9 @@ def scaled(landmarks: Iterable[Landmark], factor: float) -> tuple[Landmark, ...]
     """
     result = []
     for landmark in landmarks:
-        for side in Side:
-            position = landmark.position(side)
+        for one in Side if side is None else (side,):
+            position = landmark.position(one)
             if position is not None:
-                landmark = landmark.placed(side, (factor * value for value in position))
+                landmark = landmark.placed(one, (factor * value for value in position))
         result.append(landmark)
     return tuple(result)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -65,7 +66,7 @@ class Mesh:
         """The (2, 3) lowest and highest corner of the bounding box."""
         return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)])
 
-    @property
+    @cached_property
     def diagonal(self) -> float:
         """The length of the bounding box's diagonal, in the mesh's unit."""
         low, high = self.bounds

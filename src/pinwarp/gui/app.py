@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import platformdirs
@@ -37,6 +37,11 @@ class PrintedMessages(Dialogs):
         there = f" {other} has its name but not its content." if other is not None else ""
         self.tell_error("Mesh not found", f"The {side} mesh {path} is not there.{there}")
         return None
+
+    def ask_choice(self, title: str, text: str, more: str, labels: Sequence[str]) -> int:
+        """Leave things as they are, which is the last choice, and say so."""
+        self.tell(title, f"{text}\n{more}")
+        return len(labels) - 1
 
     def tell_error(self, title: str, text: str) -> None:
         """Print an error."""

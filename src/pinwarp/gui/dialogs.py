@@ -10,8 +10,11 @@ from typing import TypeVar
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QFileDialog, QInputDialog, QMessageBox, QWidget
 
+from pinwarp.gui.import_dialog import ImportDialog
 from pinwarp.gui.lost_work_dialog import LostAnswer, LostWorkDialog
+from pinwarp.session.landmark_import import Arriving, ImportChoice
 from pinwarp.session.recovery import LostWork
+from pinwarp.session.session import Session
 
 __all__ = ["Answer", "Dialogs", "LostAnswer", "OpenTwice", "Overwrite"]
 
@@ -190,6 +193,20 @@ class Dialogs:
         dialog.exec()
         dialog.deleteLater()
         return dialog.answer, dialog.chosen
+
+    def ask_import(self, session: Session, arriving: Arriving) -> ImportChoice | None:
+        """Show what a landmark file holds, and ask how to bring it in; None leaves it."""
+        dialog = ImportDialog(session, arriving, self._window)
+        accepted = dialog.exec()
+        dialog.deleteLater()
+        return dialog.choice if accepted else None
+
+    def ask_choice(self, title: str, text: str, more: str, labels: Sequence[str]) -> int:
+        """Ask for one of several; the first is the default, the last one what Escape means."""
+        roles = [_ACCEPT, *[_OTHER] * (len(labels) - 2), _REJECT]
+        return self._choose(
+            title, text, more, list(zip(range(len(labels)), labels, roles, strict=True))
+        )
 
     def tell_error(self, title: str, text: str) -> None:
         """Say what went wrong and what to do about it."""

@@ -15,12 +15,13 @@ from pinwarp.gui.file_tasks import (
     SESSION_FILES,
     FileTasks,
 )
+from pinwarp.gui.landmark_imports import LandmarkImports
 from pinwarp.gui.recent_files import RecentFiles
 from pinwarp.gui.recovery import where_open
 from pinwarp.gui.saving import Saving
 from pinwarp.gui.session_meshes import SessionMeshes
 from pinwarp.io.file_names import SESSION_SUFFIX, is_backup, is_session, session_name
-from pinwarp.io.landmark_files import LANDMARK_SUFFIXES, LandmarkReading, read_landmarks
+from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
 from pinwarp.io.meshes import MESH_SUFFIXES, MeshFile
 from pinwarp.io.reading import hash_of
 from pinwarp.io.session_file import read_session
@@ -28,11 +29,12 @@ from pinwarp.io.template import read_template
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.guide import next_incomplete, with_template
+from pinwarp.session.mesh_units import scale_side, size_ratio, unit_factor
 from pinwarp.session.recovery import OtherWindow
 from pinwarp.session.session import Session
 
-# Two bones of one kind never differ so much in size.
-UNLIKELY_RATIO = 50.0
+# By what a length in metres is multiplied.
+_SMALLER = {100.0: "centimetres", 1000.0: "millimetres"}
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,8 @@ class Documents:
         Asks about unsaved work before something else takes its place.
     meshes
         Reads meshes, and finds those of a session.
+    imports
+        Brings in landmarks.
     window_with
         Returns another living window that has a session open.
     """
@@ -82,6 +86,7 @@ class Documents:
         recent: RecentFiles,
         saving: Saving,
         meshes: SessionMeshes,
+        imports: LandmarkImports,
         window_with: Callable[[Path], OtherWindow | None],
     ) -> None:
         self._editor = editor
@@ -89,6 +94,7 @@ class Documents:
         self._recent = recent
         self._saving = saving
         self._meshes = meshes
+        self._imports = imports
         self._window_with = window_with
 
     # Opening
@@ -108,7 +114,7 @@ class Documents:
         # Behind the meshes in the same queue, so that everything appears in this order.
         for side, path in imports:
             if path is not None:
-                self.import_landmarks(path, side)
+                self._imports.bring_in(path, side, asking=False)
 
     def open_files(self, side: Side, paths: Sequence[Path]) -> None:
         """Open files dropped onto a viewport: a session, meshes or landmarks of that side."""
@@ -124,7 +130,7 @@ class Documents:
         others = [path for path in paths if path not in meshes]
         for path in others:
             if path.name.lower().endswith(LANDMARK_SUFFIXES):
-                self.import_landmarks(path, side)
+                self._imports.bring_in(path, side)
             else:
                 suffixes = ", ".join(MESH_SUFFIXES)
                 self._tasks.dialogs.tell_error(
@@ -148,30 +154,51 @@ class Documents:
             session = edits.set_mesh(self._editor.committed, side, file)
             self._editor.commit(session, f"Open {side.value} mesh")
             self._tasks.said.emit(_mesh_summary(file))
-            self._compare_sizes(session)
+            self._compare_sizes(side)
+            self._imports.check(side)
 
         self._tasks.run(
             f"Reading {path.name}", lambda progress: self._meshes.read(path, progress), arrived
         )
 
-    def _compare_sizes(self, session: Session) -> None:
-        """Say so when one mesh is so much larger that the two must be in different units."""
-        source, destination = (session.mesh(side) for side in Side)
-        if source is None or destination is None:
-            return
-        ratio = destination.diagonal / source.diagonal
-        if 1 / UNLIKELY_RATIO < ratio < UNLIKELY_RATIO:
+    def _compare_sizes(self, side: Side) -> None:
+        """Ask what to do where a new mesh must be in another unit than the other one."""
+        session = self._editor.committed
+        sizes = [mesh.diagonal for each in Side if (mesh := session.mesh(each)) is not None]
+        ratio, factor = size_ratio(session), unit_factor(session)
+        if ratio is None:
             return
         larger = Side.DESTINATION if ratio > 1 else Side.SOURCE
-        times = max(ratio, 1 / ratio)
-        self._tasks.dialogs.tell(
-            "Different units?",
-            f"The {larger.value} is {times:,.0f} times as large as the {larger.other.value} "
-            f"({source.diagonal:.4g} and {destination.diagonal:.4g} across): one may be in metres "
-            "and the other in millimetres.\n\nThe warp takes care of it, and what is exported is "
-            f"in the destination's unit. Only the unit beside numbers ({session.unit}) cannot be "
-            "right for both.",
+        title = "Different units?"
+        text = (
+            f"The {larger.value} is {max(sizes) / min(sizes):,.0f} times as large as the "
+            f"{larger.other.value}: {max(sizes):.4g} and {min(sizes):.4g} across."
         )
+        left = (
+            "Left as they are, the warp takes care of it, and what is exported is in the "
+            "destination's unit."
+        )
+        if factor is None:
+            self._tasks.dialogs.tell(title, f"{text}\n\n{left}")
+            return
+        # The new one first: what was there before stays as it is.
+        factors = {Side.SOURCE: factor, Side.DESTINATION: 1 / factor}
+        sides = (side, side.other)
+        answer = self._tasks.dialogs.ask_choice(
+            title,
+            text,
+            f"One seems to be in metres and the other in {_SMALLER[max(factor, 1 / factor)]}. "
+            "Scaling takes the landmarks of that side along; the file stays as it is, and the "
+            f"session remembers the factor.\n\n{left}",
+            [
+                *(f"Scale the {each.value.capitalize()} {_by(factors[each])}" for each in sides),
+                "Leave Both",
+            ],
+        )
+        if answer < len(sides):
+            chosen = sides[answer]
+            scaled = scale_side(self._editor.committed, chosen, factors[chosen])
+            self._editor.commit(scaled, f"Scale {chosen.value} {_by(factors[chosen])}")
 
     def ask_and_open_session(self) -> None:
         """Ask for a session and open it."""
@@ -210,39 +237,6 @@ class Documents:
 
         self._meshes.open(record, path.parent, f"Opening {path.name}", arrived)
 
-    def ask_and_import_landmarks(self, side: Side | None) -> None:
-        """Ask for a landmark file and read it; without a side it must hold pairs."""
-        what = f"{side.value} landmarks" if side is not None else "landmark pairs"
-        path = self._tasks.dialogs.ask_open(f"Import {what}", LANDMARK_FILES, self._tasks.folder())
-        if path is not None:
-            self.import_landmarks(path, side)
-
-    def import_landmarks(self, path: Path, side: Side | None) -> None:
-        """Bring in landmarks for one side, or pairs where the file holds pairs."""
-
-        def arrived(reading: LandmarkReading) -> None:
-            if side is None and not reading.is_pairs:
-                self._tasks.dialogs.tell_error(
-                    "These are not pairs",
-                    f"{path.name} holds positions for one mesh only: import it as source or "
-                    "destination landmarks.",
-                )
-                return
-            session = self._editor.committed
-            if reading.is_pairs:
-                session, label = edits.import_pairs(session, reading.landmarks), "Import pairs"
-            else:
-                assert side is not None
-                session = edits.import_side(session, side, reading.landmarks)
-                label = f"Import {side.value} landmarks"
-            self._editor.commit(session, label)
-            self._report_import(path, reading)
-
-        chosen = side or Side.SOURCE
-        self._tasks.run(
-            f"Reading {path.name}", lambda _progress: read_landmarks(path, chosen), arrived
-        )
-
     def ask_and_load_template(self, loaded: Callable[[str | None], None]) -> None:
         """Ask for a list of names and add those that are missing, to be placed.
 
@@ -263,25 +257,12 @@ class Documents:
 
         self._tasks.run(f"Reading {path.name}", lambda _progress: read_template(path), arrived)
 
-    def _report_import(self, path: Path, reading: LandmarkReading) -> None:
-        count = len(reading.landmarks)
-        what = "pair" if reading.is_pairs else "landmark"
-        summary = f"{count} {what}{'' if count == 1 else 's'} from {path.name} ({reading.format})"
-        self._tasks.said.emit(". ".join((summary, *reading.notes)))
-        if reading.skipped:
-            lines = [
-                f"Line {line.line}: {line.reason}\n    {line.text}" for line in reading.skipped
-            ]
-            number = len(lines)
-            self._tasks.dialogs.tell(
-                "Some lines were skipped",
-                f"{count} {what}s were read from {path.name}; "
-                f"{number} line{' was' if number == 1 else 's were'} skipped.",
-                "\n".join(lines),
-            )
-
 
 def _mesh_summary(file: MeshFile) -> str:
     mesh = file.mesh
     text = f"{file.path.name}: {len(mesh.vertices):,} vertices, {len(mesh.faces):,} triangles"
     return "; ".join((text, *file.notes))
+
+
+def _by(factor: float) -> str:
+    return f"by {factor:,.0f}" if factor > 1 else f"by 1/{1 / factor:,.0f}"

@@ -110,7 +110,7 @@ class Exports:
 
     def _say_exported(self, path: Path, session: Session) -> None:
         pairs = len(session.pairs)
-        penalty = f"penalty {session.warping_penalty:.6g}"
+        penalty = f"penalty {format_length(session.warping_penalty, session.unit, 6)}"
         what = applied_in_words(session)
         self._tasks.said.emit(f"Exported {path.name}: {what} ({pairs} pairs, {penalty})")
 

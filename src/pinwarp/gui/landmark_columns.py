@@ -10,7 +10,7 @@ import functools
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from qtpy.QtGui import QIcon
@@ -30,12 +30,16 @@ from pinwarp.session.session import Session
 
 @dataclass(frozen=True)
 class Row:
-    """A landmark, the numbers found for it by the key of their column, and what was noticed."""
+    """A landmark, the numbers found for it by the key of their column, and what was noticed.
+
+    ``unit`` is the session's, ``units`` what is right for coordinates on either side.
+    """
 
     landmark: Landmark
     values: Mapping[str, float]
     findings: Sequence[NamedFinding] = ()
     unit: str = ""
+    units: Mapping[Side, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -66,6 +70,8 @@ class Column:
         The name of an icon that says the title in less room.
     short_title
         Letters that do so.
+    is_length
+        Whether its numbers are lengths: the header then says their unit.
     has_bar
         Whether a bar behind the number shows how large it is beside the others.
     is_numeric
@@ -91,6 +97,7 @@ class Column:
     side: Side | None = None
     header_icon: str = ""
     short_title: str = ""
+    is_length: bool = False
     has_bar: bool = False
     is_numeric: bool = False
     widest: str = ""
@@ -154,9 +161,11 @@ def natural(text: str) -> tuple[tuple[int, int, str], ...]:
     return tuple((0, int(p), "") if p.isascii() and p.isdigit() else (1, 0, p) for p in parts)
 
 
-def position_text(position: Position | None) -> str:
+def position_text(position: Position | None, unit: str) -> str:
     """Return a position for people."""
-    return "not placed" if position is None else "({:.5g}, {:.5g}, {:.5g})".format(*position)
+    if position is None:
+        return "not placed"
+    return "({:.5g}, {:.5g}, {:.5g})".format(*position) + f" {unit}".rstrip()
 
 
 def _name_tip(row: Row) -> str:
@@ -201,7 +210,7 @@ def _placed_tip(side: Side) -> Callable[[Row], str]:
     def tip(row: Row) -> str:
         if _placed(side)(row) == "→":
             return "A passenger: the warp carries it over."
-        return position_text(row.landmark.position(side))
+        return position_text(row.landmark.position(side), row.units.get(side, ""))
 
     return tip
 
@@ -300,6 +309,7 @@ def _coordinate_column(side: Side, short: str, axis: int) -> Column:
         can_edit=lambda row: not row.landmark.locked,
         label="Move {}",
         side=side,
+        is_length=True,
         is_numeric=True,
         widest="-1234.56",
         on_demand=True,
@@ -331,6 +341,7 @@ COLUMNS: tuple[Column, ...] = (
         "Residual",
         "Distance from the warped source landmark to its destination",
         _length_text,
+        is_length=True,
         has_bar=True,
     ),
     number_column(
@@ -340,6 +351,7 @@ COLUMNS: tuple[Column, ...] = (
         _length_text,
         cell_tip=_left_out_tip,
         icon=_sign,
+        is_length=True,
         has_bar=True,
     ),
     Column(

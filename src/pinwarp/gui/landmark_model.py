@@ -13,9 +13,10 @@ from qtpy.QtGui import QColor
 from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.errors import PinwarpError
-from pinwarp.core.landmarks import Landmark, LandmarkState
+from pinwarp.core.landmarks import Landmark, LandmarkState, Side
 from pinwarp.gui import theme
 from pinwarp.gui.landmark_columns import COLUMNS, NAME, Column, Row, column_number, kept_icon
+from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.pair_names import pair_names
 from pinwarp.session.quality import NamedFinding, Quality
 from pinwarp.session.results import WarpInputs, WarpResult
@@ -45,6 +46,8 @@ class LandmarkModel(QAbstractTableModel):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._session = Session()
+        # Coordinates may be in another unit than the session's, or in an unknown one.
+        self._units = dict.fromkeys(Side, self._session.unit)
         self._landmarks: list[Landmark] = []
         self._values: dict[str, dict[str, float]] = {}
         self._largest: dict[str, float] = {}
@@ -65,7 +68,7 @@ class LandmarkModel(QAbstractTableModel):
         landmark = self._landmarks[number]
         name = landmark.name
         found = {key: values[name] for key, values in self._values.items() if name in values}
-        return Row(landmark, found, self._findings.get(name, ()), self._session.unit)
+        return Row(landmark, found, self._findings.get(name, ()), self._session.unit, self._units)
 
     def sort_keys(self, column: int) -> Sequence[Any]:
         """Return what the rows are sorted by in a column."""
@@ -78,6 +81,7 @@ class LandmarkModel(QAbstractTableModel):
 
     def show_session(self, session: Session) -> None:
         """Show the landmarks of a session: selection and scroll position outlast it."""
+        self._show_units(session)
         self._session = session
         # While rows come and go the views' selections are in between: nobody should act on them.
         self.is_updating = True
@@ -90,6 +94,12 @@ class LandmarkModel(QAbstractTableModel):
         for key in self._figures:
             self._show_figures(key)
         self.is_updating = False
+
+    def _show_units(self, session: Session) -> None:
+        units = {side: unit_on(session, side) for side in Side}
+        if (session.unit, units) != (self._session.unit, self._units):
+            self._session, self._units = session, units
+            self.headerDataChanged.emit(Qt.Orientation.Horizontal, 0, len(COLUMNS) - 1)
 
     def _are_renamed(self, new: Sequence[Landmark]) -> bool:
         """Whether rows only changed: the same ones, some perhaps under a name not used before."""
@@ -229,6 +239,18 @@ class LandmarkModel(QAbstractTableModel):
         """Return the number of columns."""
         return 0 if parent is not None and parent.isValid() else len(COLUMNS)
 
+    def title(self, column: int) -> str:
+        """Return what stands over a column: lengths say their unit in a second line."""
+        shown = COLUMNS[column]
+        if shown.header_icon:
+            return ""
+        title = shown.short_title or shown.title
+        if not shown.is_length:
+            return title
+        # What the warp misses is measured on the destination.
+        unit = self._units[shown.side or Side.DESTINATION]
+        return f"{title}\n{unit}" if unit else title
+
     def headerData(self, section: int, orientation: Qt.Orientation, role: int = 0) -> Any:
         """Return the titles of the columns."""
         if orientation != Qt.Orientation.Horizontal or not 0 <= section < len(COLUMNS):
@@ -236,7 +258,7 @@ class LandmarkModel(QAbstractTableModel):
         column = COLUMNS[section]
         match role:
             case Qt.ItemDataRole.DisplayRole:
-                return "" if column.header_icon else column.short_title or column.title
+                return self.title(section)
             case Qt.ItemDataRole.AccessibleTextRole:
                 return column.title
             case Qt.ItemDataRole.DecorationRole if column.header_icon:

@@ -117,8 +117,8 @@ class LandmarkTable(QTableView):
         self._fitting = True
         for number, column in enumerate(COLUMNS):
             if number != _NAME and not self.isColumnHidden(number):
-                words = column.short_title or column.title
-                title = _SIGN if column.header_icon else _width(header, words)
+                lines = self._model.title(number).split("\n")
+                title = max(_width(header, line) for line in lines) or _SIGN
                 sign = _SIGN if column.is_numeric and column.icon is not None else 0
                 cell = sign + _width(self, column.widest) + 12
                 header.resizeSection(number, max(title + arrow + 3 * margin, cell))

@@ -8,6 +8,8 @@ from pinwarp.gui.scale_bar import round_length
 
 # From here on a number is written with a power of ten.
 _LARGEST = 1e6
+# Nobody places landmarks closer to a bone than this share of its size.
+_ON_MESH = 1e-4
 
 
 def format_number(value: float, digits: int = 3) -> str:
@@ -33,7 +35,20 @@ def format_length(value: float, unit: str, digits: int = 4) -> str:
     """
     if math.isinf(value):
         return "affine"
-    return f"{format_number(value, digits)} {unit}"
+    return f"{format_number(value, digits)} {unit}".rstrip()
+
+
+def distance_from_mesh(distance: float, size: float, unit: str) -> str:
+    """Return how far something lies from a mesh of some size, in words.
+
+    Examples
+    --------
+    >>> distance_from_mesh(312.4, 480.0, "mm"), distance_from_mesh(2.5e-7, 480.0, "mm")
+    ('312 mm from the mesh', 'on the mesh')
+    """
+    if distance <= _ON_MESH * size:
+        return "on the mesh"
+    return f"{format_length(distance, unit, 3)} from the mesh"
 
 
 def ticks(largest: float) -> tuple[float, ...]:

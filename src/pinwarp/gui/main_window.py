@@ -21,6 +21,7 @@ from pinwarp.gui.guidance import Guidance
 from pinwarp.gui.help_text import ABOUT, ABOUT_PENALTY, ABOUT_QUALITY
 from pinwarp.gui.job_progress import JobProgress
 from pinwarp.gui.jobs import SlowJob
+from pinwarp.gui.landmark_imports import LandmarkImports
 from pinwarp.gui.map_presenter import MapPresenter
 from pinwarp.gui.penalty_tuning import PenaltyTuning
 from pinwarp.gui.picture_export import PictureExport
@@ -111,12 +112,14 @@ class MainWindow(WindowFrame):
         meshes = SessionMeshes(self._tasks, self.presenter.keep_surface)
         self.saving = Saving(self.editor, self._tasks, self._recent)
         self.recovery = Recovery(self.editor, self._tasks, self.saving, meshes, state_folder, self)
+        self.imports = LandmarkImports(self.editor, self._tasks)
         self.documents = Documents(
             self.editor,
             self._tasks,
             self._recent,
             self.saving,
             meshes,
+            self.imports,
             self.recovery.window_with,
         )
         self.exports = Exports(self.editor, self._tasks)
@@ -152,9 +155,9 @@ class MainWindow(WindowFrame):
             "save": self.saving.save,
             "save_as": self.saving.save_as,
             "restore": self.recovery.offer_again,
-            "import_source": lambda: documents.ask_and_import_landmarks(Side.SOURCE),
-            "import_destination": lambda: documents.ask_and_import_landmarks(Side.DESTINATION),
-            "import_pairs": lambda: documents.ask_and_import_landmarks(None),
+            "import_source": lambda: self.imports.ask(Side.SOURCE),
+            "import_destination": lambda: self.imports.ask(Side.DESTINATION),
+            "import_pairs": lambda: self.imports.ask(None),
             "export_source": lambda: self.exports.export_landmarks(Side.SOURCE),
             "export_destination": lambda: self.exports.export_landmarks(Side.DESTINATION),
             "export_pairs": lambda: self.exports.export_landmarks(None),

@@ -20,6 +20,7 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.factor import SourceFactor
+from pinwarp.core.landmarks import Side
 from pinwarp.core.quality import PenaltyCurve
 from pinwarp.core.spline import PenaltyConvention
 from pinwarp.gui import theme
@@ -34,6 +35,7 @@ from pinwarp.gui.penalty_figures import (
 from pinwarp.gui.penalty_plot import PenaltyPlot, Plotted
 from pinwarp.gui.penalty_slider import STEPS, PenaltySlider
 from pinwarp.session.edits import UNITS
+from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.quality import LEAST_PAIRS, Quality, penalty_advice
 from pinwarp.session.results import WarpResult
 from pinwarp.session.session import Session
@@ -182,7 +184,7 @@ class PenaltyPanel(QWidget):
 
     def show_result(self, result: WarpResult | None) -> None:
         """Show what the penalty does."""
-        self.figures.show_result(result, self._session.unit)
+        self.figures.show_result(result, unit_on(self._session, Side.DESTINATION))
         if result is not None and result.factor is not None and not result.factor.has_modes:
             # While a source landmark moves, the penalty's scale is not known: it will be at rest.
             return
@@ -254,7 +256,8 @@ class PenaltyPanel(QWidget):
         session = self._session
         share = self._share_of(session.warping_penalty)
         figures = self._figures_at(session.warping_penalty, share)
-        self.figures.show_left_out(figures[0] if figures else math.nan, session.unit)
+        unit = unit_on(session, Side.DESTINATION)
+        self.figures.show_left_out(figures[0] if figures else math.nan, unit)
         has_place = self._factor is not None and len(self._factor.poles) > 0
         self.plot.show_present(share if has_place else None, figures)
         self._show_suggestion()

@@ -23,6 +23,8 @@ from pinwarp.gui.penalty_panel import PenaltyPanel
 from pinwarp.gui.scene import scene_of
 from pinwarp.gui.surface import Surface, shading_normals, triangles
 from pinwarp.gui.viewport import Viewport
+from pinwarp.io.mesh_reference import MeshReference
+from pinwarp.io.meshes import MeshFile
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.ghost import Ghost, ghost_of
@@ -156,8 +158,7 @@ class Presenter:
         for side, viewport in self._viewports.items():
             viewport.show_surface(self._surface(session.mesh(side)))
             file = session.mesh_file(side)
-            mirrored = f" (mirrored: {file.mirrored})" if file is not None and file.mirrored else ""
-            viewport.layer.caption = file.path.name + mirrored if file is not None else ""
+            viewport.layer.caption = "" if file is None else _caption(file)
         self._model.show_session(session)
         self._panel.show_session(session)
         self._on_looks()
@@ -300,3 +301,11 @@ class Presenter:
     def _on_planar(self, planar: bool) -> None:
         label = "Treat as planar" if planar else "Do not treat as planar"
         self._editor.commit(edits.set_planar(self._editor.committed, planar), label)
+
+
+def _caption(file: MeshFile | MeshReference) -> str:
+    """Return the name of a mesh's file, and how the mesh differs from what is in it."""
+    ways = [f"mirrored: {file.mirrored}"] if file.mirrored else []
+    if file.scaled != 1:
+        ways.append(f"× {file.scaled:g}")
+    return f"{file.path.name} ({', '.join(ways)})" if ways else file.path.name

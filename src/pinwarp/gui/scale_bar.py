@@ -42,7 +42,7 @@ def length_text(length: float, unit: str) -> str:
     >>> length_text(50.0, "mm"), length_text(0.05, "m")
     ('50 mm', '0.05 m')
     """
-    return f"{length:.12g} {unit}"
+    return f"{length:.12g} {unit}".rstrip()
 
 
 def paint_scale_bar(painter: QPainter, view: QRectF, unit_per_pixel: float, unit: str) -> QRectF:

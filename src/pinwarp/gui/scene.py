@@ -11,6 +11,7 @@ from pinwarp.core.landmarks import Landmark, LandmarkState, Position, Side, as_p
 from pinwarp.core.mesh import Mesh
 from pinwarp.session.editor import Selection, ViewState
 from pinwarp.session.ghost import Ghost
+from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.pair_names import pair_names
 from pinwarp.session.quality import Quality
 from pinwarp.session.results import WarpResult, is_rounding
@@ -132,7 +133,7 @@ def scene_of(
         if side is Side.DESTINATION and view.arrows
         else (),
         hint="" if session.mesh(side) is not None else _EMPTY_HINTS[side],
-        unit=session.unit,
+        unit=unit_on(session, side),
         marker_radius=view.marker_radius,
         wireframe=view.wireframe,
         section=view.section,

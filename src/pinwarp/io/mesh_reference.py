@@ -25,12 +25,15 @@ class MeshReference:
         Its number of vertices then.
     mirrored
         The axes across which the session sees it mirrored, such as ``"x"``.
+    scaled
+        What the session multiplies its coordinates by, such as 1000 from metres to millimetres.
     """
 
     path: Path
     sha256: str
     vertices: int
     mirrored: str = ""
+    scaled: float = 1.0
 
 
 def mesh_reference(text: str, folder: Path) -> MeshReference:

@@ -73,6 +73,8 @@ class MeshFile:
         What was changed or left out, as sentences for the user.
     mirrored
         The axes across which the mesh was mirrored after reading, such as ``"x"``.
+    scaled
+        What its coordinates were multiplied by after reading.
 
     Examples
     --------
@@ -87,6 +89,7 @@ class MeshFile:
     sha256: str
     notes: tuple[str, ...]
     mirrored: str = ""
+    scaled: float = 1.0
 
 
 def read_mesh(

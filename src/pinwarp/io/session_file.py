@@ -107,6 +107,8 @@ def write_session(path: str | Path, record: SessionRecord, *, relative_meshes: b
             header.append((key, mesh_text(mesh, folder)))
             if mesh.mirrored:
                 header.append((key.replace("mesh", "mirrored"), mesh.mirrored))
+            if mesh.scaled != 1:
+                header.append((key.replace("mesh", "scaled"), repr(float(mesh.scaled))))
     header += [
         ("warping_penalty", repr(float(record.warping_penalty))),
         ("penalty_convention", record.penalty_convention),

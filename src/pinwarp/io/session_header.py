@@ -25,6 +25,8 @@ _FIELDS = {
     "destination_mesh": "destination_mesh",
     "source_mirrored": "source_mirrored",
     "destination_mirrored": "destination_mirrored",
+    "source_scaled": "source_scaled",
+    "destination_scaled": "destination_scaled",
     "warping_penalty": "warping_penalty",
     "penalty_convention": "penalty_convention",
     "unit": "unit",
@@ -172,17 +174,18 @@ def read_values(
         except ValueError as error:
             raise FileFormatError(path, f"{as_sentence(str(error))} {CORRECT}", line) from None
     for side in ("source", "destination"):
-        axes = known.pop(f"{side}_mirrored", None)
-        if axes is None:
-            continue
-        mesh = known.get(f"{side}_mesh")
-        if mesh is None:
-            raise FileFormatError(
-                path,
-                f"The {side} mesh is mirrored, but there is none. {CORRECT}",
-                lines[f"{side}_mirrored"],
-            )
-        known[f"{side}_mesh"] = replace(mesh, mirrored=axes)
+        for how in ("mirrored", "scaled"):
+            value = known.pop(f"{side}_{how}", None)
+            if value is None:
+                continue
+            mesh = known.get(f"{side}_mesh")
+            if mesh is None:
+                raise FileFormatError(
+                    path,
+                    f"The {side} mesh is {how}, but there is none. {CORRECT}",
+                    lines[f"{side}_{how}"],
+                )
+            known[f"{side}_mesh"] = replace(mesh, **{how: value})
     return known, tuple(unknown)
 
 
@@ -193,6 +196,8 @@ def _value(key: str, text: str, folder: Path) -> MeshReference | float | bool | 
             return mesh_reference(text, folder)
         case "source_mirrored" | "destination_mirrored":
             return _axes(key, text)
+        case "source_scaled" | "destination_scaled":
+            return _factor(key, text)
         case "warping_penalty":
             return penalty_of(text)
         case "treat_as_planar":
@@ -218,6 +223,13 @@ def _axes(key: str, text: str) -> str:
     if not text or len(axes) != len(text):
         raise ValueError(f"{key} is {shortened(text)} and names no axes such as x or xy")
     return axes
+
+
+def _factor(key: str, text: str) -> float:
+    value = number_of(text, ",")
+    if not value > 0:
+        raise ValueError(f"{key} is {text}, and only what is above 0 scales a mesh")
+    return value
 
 
 def _blend(text: str) -> float:

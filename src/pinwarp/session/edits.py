@@ -13,15 +13,13 @@ from pinwarp.core.mirror import mirrored_mesh, mirrored_points, toggled
 from pinwarp.core.spline import PenaltyConvention, check_penalty
 from pinwarp.io.clipboard_table import PastedLandmark
 from pinwarp.io.meshes import MeshFile
+from pinwarp.session.mesh_units import likely_unit
+from pinwarp.session.naming import is_automatic
 from pinwarp.session.session import Session
 
 UNITS = ("mm", "cm", "m")
-# A mesh with a shorter diagonal is taken to be in metres.
-LARGEST_IN_METRES = 3.0
 NAME_PATTERN = "landmark_{n}"
 PASSENGER_PATTERN = "passenger_{n}"
-# Names that nobody chose: such a landmark may go with its last side.
-_AUTOMATIC = re.compile(r"(landmark|passenger)_\d+")
 
 
 def next_name(session: Session, pattern: str = NAME_PATTERN) -> str:
@@ -117,7 +115,8 @@ def remove_side(session: Session, name: str, side: Side) -> Session:
     landmark = _existing(session, name)
     bare = landmark.placed(side, None)
     nothing_left = bare.source is None and bare.destination is None
-    if nothing_left and _AUTOMATIC.fullmatch(name) and not landmark.note:
+    # Nobody chose that name: such a landmark may go with its last side.
+    if nothing_left and is_automatic(name) and not landmark.note:
         return remove(session, [name])
     return _changed(session, name, lambda _: bare)
 
@@ -262,7 +261,7 @@ def set_mesh(session: Session, side: Side, file: MeshFile) -> Session:
     The first mesh of a session says which unit is meant: bones measure centimetres to metres.
     """
     if session.source is None and session.destination is None:
-        session = set_unit(session, "m" if file.mesh.diagonal < LARGEST_IN_METRES else "mm")
+        session = set_unit(session, likely_unit(file.mesh))
     return session.with_mesh(side, file)
 
 

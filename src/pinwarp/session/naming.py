@@ -1,4 +1,4 @@
-"""New names for many landmarks at once, and how several of them are spoken of."""
+"""New names for landmarks, many at once, and how several of them are spoken of."""
 
 from __future__ import annotations
 
@@ -9,7 +9,44 @@ from functools import partial
 from pinwarp.core.errors import LandmarkError
 
 _FIELD = re.compile(r"\{([^{}]*)\}")
+_AUTOMATIC = re.compile(r"(landmark|passenger)_\d+")
+_NUMBERED = re.compile(r"(.*_)(\d{1,9})", re.DOTALL)
 _NUMBER = re.compile(r"n(?::0?(\d))?")
+
+
+def is_automatic(name: str) -> bool:
+    """Whether a name is one that nobody chose.
+
+    Examples
+    --------
+    >>> is_automatic("landmark_7"), is_automatic("fovea")
+    (True, False)
+    """
+    return _AUTOMATIC.fullmatch(name) is not None
+
+
+def free_names(names: Iterable[str], taken: Iterable[str]) -> list[str]:
+    """Return names that are not taken: where one is, it counts on behind its last underscore.
+
+    Examples
+    --------
+    >>> free_names(["fovea", "head", "landmark_0"], ["fovea", "landmark_0", "landmark_1"])
+    ['fovea_2', 'head', 'landmark_2']
+    """
+    used, last = set(taken), dict[str, int]()
+    found = []
+    for name in names:
+        if name in used:
+            match = _NUMBERED.fullmatch(name)
+            stem, number = (match[1], int(match[2])) if match else (f"{name}_", 1)
+            number = max(number, last.get(stem, 0))
+            while name in used:
+                number += 1
+                name = f"{stem}{number}"
+            last[stem] = number
+        used.add(name)
+        found.append(name)
+    return found
 
 
 def names_by_pattern(names: Sequence[str], pattern: str, first: int = 1) -> dict[str, str]:

@@ -112,9 +112,10 @@ def _mesh_text(session: Session, side: Side) -> str:
     if not isinstance(file, MeshFile):
         return "none" if file is None else f"{file.path.name} (not found)"
     mirrored = f", mirrored across {file.mirrored}" if file.mirrored else ""
+    scaled = f", scaled by {file.scaled:g}" if file.scaled != 1 else ""
     return (
         f"{file.path.name}: {len(file.mesh.vertices):,} vertices, "
-        f"{len(file.mesh.faces):,} triangles{mirrored}; SHA-256 {file.sha256}"
+        f"{len(file.mesh.faces):,} triangles{mirrored}{scaled}; SHA-256 {file.sha256}"
     )
 
 

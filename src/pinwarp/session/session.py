@@ -127,11 +127,13 @@ def from_record(
 
 
 def as_seen(file: MeshFile, reference: MeshReference) -> MeshFile:
-    """Return a mesh that was read as the session sees it: in a mirror, where it says so."""
-    if not reference.mirrored:
-        return file
-    mesh = mirrored_mesh(file.mesh, reference.mirrored)
-    return replace(file, mesh=mesh, mirrored=reference.mirrored)
+    """Return a mesh as the session sees it: in another unit or in a mirror, where it says so."""
+    mesh = file.mesh
+    if reference.scaled != 1:
+        mesh = mesh.with_vertices(reference.scaled * mesh.vertices)
+    if reference.mirrored:
+        mesh = mirrored_mesh(mesh, reference.mirrored)
+    return replace(file, mesh=mesh, mirrored=reference.mirrored, scaled=reference.scaled)
 
 
 def _found(
@@ -142,5 +144,6 @@ def _found(
 
 def _reference(file: MeshFile | MeshReference | None) -> MeshReference | None:
     if isinstance(file, MeshFile):
-        return MeshReference(file.path, file.sha256, len(file.mesh.vertices), file.mirrored)
+        count = len(file.mesh.vertices)
+        return MeshReference(file.path, file.sha256, count, file.mirrored, file.scaled)
     return file
