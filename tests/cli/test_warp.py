@@ -15,6 +15,7 @@ from pinwarp.io.meshes import read_mesh, write_mesh
 from pinwarp.session import edits
 from pinwarp.session.exports import session_spline, warped_mesh
 from pinwarp.session.files import read_session, write_session
+from pinwarp.session.mesh_units import scale_side
 
 
 @pytest.fixture
@@ -153,6 +154,17 @@ def test_inputs_of_a_mirrored_session_are_mirrored_like_its_source(
         "warp", session, study / "source.csv", "-o", out, "--force", exit_code=2
     )
     assert "where the mirror is" in outcome.stderr
+
+
+def test_inputs_of_a_scaled_session_are_scaled_like_its_source(
+    pinwarp_command, session, study, tmp_path
+):
+    scaled = scale_side(read_session(session), Side.SOURCE, 0.001)
+    write_session(session, scaled)
+    out = tmp_path / "a.ply"
+    outcome = pinwarp_command("warp", session, study / "source.ply", "-o", out)
+    assert "scales its source by 0.001: so are the inputs" in outcome.stderr
+    assert np.allclose(read_mesh(out).mesh.vertices, warped_mesh(scaled).vertices)
 
 
 def test_landmarks_can_be_warped_without_any_mesh(pinwarp_command, session, study, tmp_path):

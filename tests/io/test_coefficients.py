@@ -39,6 +39,7 @@ def solved(penalty: float = 0.25, components: Components = Components.FULL) -> C
         components=components.value,
         source_sha256="ab" * 32,
         source_mirrored="x",
+        source_scaled=1000.0,
         version="0.1.0",
     )
 

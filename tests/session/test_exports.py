@@ -32,6 +32,7 @@ from pinwarp.session.exports import (
 )
 from pinwarp.session.files import read_session
 from pinwarp.session.mesh_data import warped_mesh_data
+from pinwarp.session.mesh_units import scale_side
 from pinwarp.session.script import script_of
 from pinwarp.session.session import Session
 
@@ -211,8 +212,9 @@ def beside(sample, tmp_path) -> Session:
         ),
         lambda session: edits.set_planar(session, True),
         lambda session: edits.mirror_source(session, "x"),
+        lambda session: scale_side(edits.mirror_source(session, "x"), Side.SOURCE, 0.001),
     ],
-    ids=["whole", "penalty", "affine", "opynsim", "in part", "planar", "mirrored"],
+    ids=["whole", "penalty", "affine", "opynsim", "in part", "planar", "mirrored", "scaled"],
 )
 def test_the_script_writes_the_mesh_that_is_exported(beside, tmp_path, change):
     session = change(beside)

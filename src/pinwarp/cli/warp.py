@@ -51,6 +51,8 @@ def warp(
     if opened.source is not None and (axes := opened.source.mirrored):
         opened = with_meshes(opened, [Side.SOURCE])
         tell_notes([f"The session mirrors its source ({axes}): so are the inputs."])
+    if opened.source is not None and (factor := opened.source.scaled) != 1:
+        tell_notes([f"The session scales its source by {factor:g}: so are the inputs."])
     warper = FileWarper(opened)
     failed = 0
     with progress_bar() as progress:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.gui.file_tasks import LANDMARK_FILES, MESH_FILES, FileTasks, Progress
+from pinwarp.gui.lengths import format_length
 from pinwarp.io.atomic import write_atomically
 from pinwarp.io.coefficients import COEFFICIENT_SUFFIXES, write_coefficients
 from pinwarp.io.landmark_files import write_landmarks

@@ -28,7 +28,8 @@ EQUATION = (
     "a4 the rows of affine, and |.| is the Euclidean length. The basis is U(r) = +r. f(v) is in "
     "the frame and unit of the destination; with the components 'without pose' it is in the "
     "frame of the source. No penalty and no blend is to be added: they are in the coefficients. "
-    "A mesh that is mirrored across an axis is mirrored first, about the middle of its bounds."
+    "A mesh that is scaled is multiplied by that number first; one that is mirrored across an "
+    "axis is then mirrored about the middle of its bounds."
 )
 
 _ARRAYS = ("source_landmarks", "weights", "affine")
@@ -64,6 +65,8 @@ class Coefficients:
         The hashes of the mesh files; empty where there was none.
     source_mirrored, destination_mirrored
         The axes across which a mesh is mirrored after reading, such as ``"x"``.
+    source_scaled, destination_scaled
+        What the coordinates of a mesh are multiplied by after reading.
     version
         The pinwarp that wrote it.
     """
@@ -78,6 +81,8 @@ class Coefficients:
     destination_sha256: str = ""
     source_mirrored: str = ""
     destination_mirrored: str = ""
+    source_scaled: float = 1.0
+    destination_scaled: float = 1.0
     version: str = ""
 
 
@@ -180,8 +185,10 @@ def _fields(coefficients: Coefficients) -> dict[str, Any]:
         "blend": float(coefficients.blend),
         "planar": coefficients.planar,
         "source_sha256": coefficients.source_sha256,
+        "source_scaled": float(coefficients.source_scaled),
         "source_mirrored": coefficients.source_mirrored,
         "destination_sha256": coefficients.destination_sha256,
+        "destination_scaled": float(coefficients.destination_scaled),
         "destination_mirrored": coefficients.destination_mirrored,
         "names": list(coefficients.names),
         "affine": spline.affine.tolist(),
@@ -253,6 +260,8 @@ def _coefficients(fields: Mapping[str, Any]) -> Coefficients:
         destination_sha256=texts["destination_sha256"],
         source_mirrored=texts["source_mirrored"],
         destination_mirrored=texts["destination_mirrored"],
+        source_scaled=float(fields["source_scaled"]),
+        destination_scaled=float(fields["destination_scaled"]),
         version=texts["pinwarp"],
     )
 

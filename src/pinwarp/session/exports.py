@@ -132,6 +132,8 @@ def session_coefficients(session: Session) -> Coefficients:
         destination_sha256=destination.sha256 if destination is not None else "",
         source_mirrored=source.mirrored if source is not None else "",
         destination_mirrored=destination.mirrored if destination is not None else "",
+        source_scaled=source.scaled if source is not None else 1.0,
+        destination_scaled=destination.scaled if destination is not None else 1.0,
         version=pinwarp.__version__,
     )
 

@@ -9,6 +9,8 @@ from pathlib import Path
 import pinwarp
 from pinwarp.core.components import Components
 from pinwarp.core.errors import PinwarpError
+from pinwarp.io.mesh_reference import MeshReference
+from pinwarp.io.meshes import MeshFile
 from pinwarp.session.exports import applied_in_words
 from pinwarp.session.session import Session
 
@@ -48,17 +50,17 @@ def script_of(session: Session, folder: Path) -> str:
     pairs = [
         f"    {pair.name!r}: ({pair.source!r}, {pair.destination!r})," for pair in session.pairs
     ]
-    mirror, imports = _mirrored(session.source.mirrored)
+    changes, imports = _as_seen(session.source)
     return "\n".join(
         [
             f'"""Warp a mesh as pinwarp {pinwarp.__version__} did: {applied_in_words(session)}, '
             f'{len(pairs)} pairs."""',
             "",
-            *imports,
+            *(["from dataclasses import replace"] if changes else []),
             "from pathlib import Path",
             "",
             "import pinwarp",
-            *(["from pinwarp.core.mirror import mirrored_mesh"] if mirror else []),
+            *imports,
             "",
             "HERE = Path(__file__).resolve().parent",
             f"SOURCE_MESH = HERE / {_relative(path, folder)!r}",
@@ -73,7 +75,7 @@ def script_of(session: Session, folder: Path) -> str:
             "mesh = pinwarp.read_mesh(SOURCE_MESH)",
             "if mesh.sha256 != SOURCE_SHA256:",
             '    print(f"{SOURCE_MESH} is not the file that the landmarks were placed on.")',
-            *mirror,
+            *changes,
             "session = pinwarp.Session(",
             "    source=mesh,",
             "    landmarks=tuple(pinwarp.Landmark(name, *pair) for name, pair in PAIRS.items()),",
@@ -86,12 +88,16 @@ def script_of(session: Session, folder: Path) -> str:
     )
 
 
-def _mirrored(axes: str) -> tuple[list[str], list[str]]:
-    """Return what mirrors the mesh as the session sees it, and an import for that."""
-    if not axes:
-        return [], []
-    mirror = f'mesh = replace(mesh, mesh=mirrored_mesh(mesh.mesh, "{axes}"))'
-    return [mirror], ["from dataclasses import replace"]
+def _as_seen(file: MeshFile | MeshReference) -> tuple[list[str], list[str]]:
+    """Return what scales and mirrors the mesh as the session sees it, and an import for that."""
+    changes, imports = [], []
+    if file.scaled != 1:
+        scaled = f"mesh.mesh.with_vertices({file.scaled!r} * mesh.mesh.vertices)"
+        changes.append(f"mesh = replace(mesh, mesh={scaled})")
+    if file.mirrored:
+        changes.append(f'mesh = replace(mesh, mesh=mirrored_mesh(mesh.mesh, "{file.mirrored}"))')
+        imports.append("from pinwarp.core.mirror import mirrored_mesh")
+    return changes, imports
 
 
 def _options(session: Session) -> list[str]:

@@ -222,7 +222,7 @@ def made_from(task: Task) -> str:
     source = session.source
     parts = (
         pinwarp.__version__,
-        None if source is None else (source.sha256, source.mirrored),
+        None if source is None else (source.sha256, source.mirrored, source.scaled),
         tuple((x.name, x.source, x.role.value, x.enabled) for x in session.landmarks),
         session.warping_penalty,
         session.convention.value,

@@ -97,6 +97,7 @@ class FileWarper:
         self._unit = session.unit
         self._spline: Spline = session_spline(session)
         self._axes = "" if session.source is None else session.source.mirrored
+        self._scale = 1.0 if session.source is None else session.source.scaled
         self._mesh = session.mesh(Side.SOURCE)
         if self._axes and self._mesh is None and session.source is not None:
             raise PinwarpError(
@@ -148,6 +149,8 @@ class FileWarper:
         return (*reading.notes, *notes, *skipped)
 
     def _carried(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Carry places over, seen first as the session sees its source: scaled, in a mirror."""
+        places = self._scale * places
         for axis in self._axes:
             assert self._mesh is not None, "checked at the start"
             places = mirrored_points(places, self._mesh, axis)
