@@ -41,7 +41,7 @@ def test_a_warped_mesh_carries_normals_and_what_the_warp_does(sample, tmp_path, 
     assert set(found.point_data) >= FIGURES
     assert found.point_data["Normals"].shape == (found.n_points, 3)
     assert found.point_data["distance_mm"].max() < 4
-    assert "the full warp (16 pairs, penalty 0)" in said(sample)
+    assert "the full warp (16 pairs, penalty 0 mm)" in said(sample)
 
 
 def test_a_ply_has_them_as_properties_of_its_vertices(sample, tmp_path):
