@@ -41,7 +41,8 @@ def _processor() -> str:
 
 def show(console: Console, title: str, rows: list[dict[str, Any]]) -> None:
     """Print rows as one table: our milliseconds, and each peer's time as a multiple of ours."""
-    sizes = [key for key in ("what", "vertices", "triangles", "pairs") if key in rows[0]]
+    keys = ("what", "vertices", "triangles", "pairs")
+    sizes = [key for key in keys if any(key in row for row in rows)]
     figures = list(dict.fromkeys(key for row in rows for key in row if key not in sizes))
     ours = "pinwarp" in figures
     table = Table(title=title, title_justify="left", title_style="bold")
@@ -53,7 +54,8 @@ def show(console: Console, title: str, rows: list[dict[str, Any]]) -> None:
             f"{key} / ours" if peer else f"{key} (ms)" if ours else key, justify="right"
         )
     for row in rows:
-        cells = [f"{row[key]:,}" if isinstance(row[key], int) else row[key] for key in sizes]
+        given = (row.get(key, "") for key in sizes)
+        cells = [f"{value:,}" if isinstance(value, int) else value for value in given]
         for key in figures:
             value = row.get(key)
             if value is None:
