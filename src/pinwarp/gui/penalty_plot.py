@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from qtpy.QtCore import QEvent, QLineF, QPoint, QPointF, QRectF, QSize, Qt, Signal
@@ -18,6 +19,7 @@ from qtpy.QtGui import (
     QPaintEvent,
     QPalette,
     QPen,
+    QPixmap,
     QPolygonF,
 )
 from qtpy.QtWidgets import QSizePolicy, QWidget
@@ -57,6 +59,12 @@ class Plotted:
     title: str
 
     @property
+    def looks(self) -> tuple[object, ...]:
+        """All that axis and curves depend on: the same figures come anew while one slides."""
+        curve = self.curve
+        return (curve.leave_one_out.tobytes(), curve.residual.tobytes(), self.unit)
+
+    @cached_property
     def top(self) -> float:
         """The largest length on the vertical axis."""
         lines = np.concatenate([self.curve.leave_one_out, self.curve.residual])
@@ -98,6 +106,8 @@ class PenaltyPlot(QWidget):
         self._present: float | None = None
         self._present_figures: tuple[float, float] | None = None
         self._hovered: float | None = None
+        self._picture = QPixmap()
+        self._picture_for: object = None
         self.setAccessibleName("Leave-one-out error and residual over the warping penalty")
         self.setMouseTracking(True)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -194,17 +204,34 @@ class PenaltyPlot(QWidget):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         area = self._area
-        painter.fillRect(area, self.palette().color(QPalette.ColorRole.Base))
         if self._plotted is None:
+            painter.fillRect(area, self.palette().color(QPalette.ColorRole.Base))
             painter.setPen(self._quiet)
             painter.drawText(area.adjusted(12, 0, -12, 0), _CENTRED, self._hint)
         else:
-            self._paint_axis(painter, area, self._plotted)
-            self._paint_curves(painter, area, self._plotted)
+            painter.drawPixmap(0, 0, self._resting_picture(area, self._plotted))
             self._paint_present(painter, area)
             self._paint_suggestion(painter)
             self._paint_title(painter, area, self._plotted)
         painter.end()
+
+    def _resting_picture(self, area: QRectF, plotted: Plotted) -> QPixmap:
+        """Return axis and curves, drawn once: the slider moves over them at every frame."""
+        ratio, palette = self.devicePixelRatioF(), self.palette()
+        key = (plotted.looks, area, self.size(), ratio, palette.cacheKey(), self.font().key())
+        if key != self._picture_for:
+            self._picture_for = key
+            self._picture = QPixmap(self.size() * ratio)
+            self._picture.setDevicePixelRatio(ratio)
+            self._picture.fill(Qt.GlobalColor.transparent)
+            painter = QPainter(self._picture)
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            painter.setFont(self.font())
+            painter.fillRect(area, palette.color(QPalette.ColorRole.Base))
+            self._paint_axis(painter, area, plotted)
+            self._paint_curves(painter, area, plotted)
+            painter.end()
+        return self._picture
 
     @property
     def _quiet(self) -> QColor:

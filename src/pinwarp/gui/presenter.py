@@ -28,12 +28,12 @@ from pinwarp.io.meshes import MeshFile
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.ghost import Ghost, ghost_of
-from pinwarp.session.quality import Quality
-from pinwarp.session.results import WarpInputs, WarpResult, WarpSolver
+from pinwarp.session.quality import Quality, quality_of
+from pinwarp.session.results import EAGER_MODES, WarpInputs, WarpResult, WarpSolver
 from pinwarp.session.session import Session
 
 # A table of figures that run is not read: while something moves it is renewed this often (s).
-TABLE_PAUSE = 0.15
+TABLE_PAUSE = 0.25
 
 
 class _Kind(Enum):
@@ -58,12 +58,14 @@ class _Shaded:
     result: WarpResult
     kind: _Kind
     warps: tuple[OverlayWarp | None, OverlayWarp | None] = (None, None)
+    quality: Quality | None = None
 
 
 class Presenter:
     """Everything between the editor and the widgets; both are passed in.
 
-    ``result_changed`` emits each new warp, and whether it is at rest (no drag is under way).
+    ``result_changed`` emits each new warp, whether it is at rest (no drag is under way), and the
+    quality of its pairs where that took no time; else it is for others to find out.
 
     Parameters
     ----------
@@ -75,7 +77,7 @@ class Presenter:
         The other views.
     """
 
-    result_changed = Signal(WarpResult, bool)
+    result_changed = Signal(WarpResult, bool, object)
 
     def __init__(
         self,
@@ -96,7 +98,7 @@ class Presenter:
         self._asked: tuple[WarpInputs, bool] | None = None
         self.result: WarpResult | None = None
         self._quality: Quality | None = None
-        self._table_shown_at = 0.0
+        self._table_shown_at = self._judged_at = 0.0
         self._shown: weakref.WeakKeyDictionary[Mesh, OverlayWarp] = weakref.WeakKeyDictionary()
         self.ghosts: dict[Side, Ghost | None] = dict.fromkeys(Side)
         self._known_ghosts: dict[Side, Ghost | None] = {}
@@ -238,7 +240,18 @@ class Presenter:
                 self._shade(result, inputs.mesh, result.vertices),
                 self._shade(result, inputs.stand_in, result.stand_in),
             ),
+            self._judge(result, request.kind),
         )
+
+    def _judge(self, result: WarpResult, kind: _Kind) -> Quality | None:
+        """Judge the pairs along with the warp, so that all figures appear in one go."""
+        factor, now = result.factor, time.monotonic()
+        if factor is None or not factor.has_modes or len(result.inputs.source) > EAGER_MODES:
+            return None
+        if kind is _Kind.PREVIEW and now - self._judged_at < TABLE_PAUSE:
+            return None
+        self._judged_at = now
+        return quality_of(result)
 
     def _shade(
         self,
@@ -276,12 +289,16 @@ class Presenter:
             # Only now: the stand-in stays until the full mesh has caught up.
             viewport.set_warping(False)
         now = time.monotonic()
-        if shaded.kind is not _Kind.PREVIEW or now - self._table_shown_at > TABLE_PAUSE:
+        due = shaded.quality is not None or now - self._table_shown_at > 2 * TABLE_PAUSE
+        due |= shaded.kind is not _Kind.PREVIEW
+        if due:
             self._table_shown_at = now
             self._model.show_result(result)
-        self._panel.show_result(result)
+        # Each widget that changes costs a composition of the window: only the slider's is live.
+        if due or result.inputs.penalty != self._editor.committed.warping_penalty:
+            self._panel.show_result(result)
         self._on_looks()
-        self.result_changed.emit(result, shaded.kind is not _Kind.PREVIEW)
+        self.result_changed.emit(result, shaded.kind is not _Kind.PREVIEW, shaded.quality)
         if shaded.kind is _Kind.REST and result.factor is not None and not result.factor.has_modes:
             self._warps.request_if_idle(_Request(result.inputs, _Kind.REFINE, result))
 

@@ -1,21 +1,19 @@
-"""Judges the pairs off the UI thread whenever the warp has changed, and tells who wants to know."""
+"""Judges the pairs whenever the warp has changed, and tells who wants to know."""
 
 from __future__ import annotations
-
-import time
 
 from psygnal import Signal
 
 from pinwarp.gui.jobs import LatestWins
-from pinwarp.gui.presenter import TABLE_PAUSE, Presenter
+from pinwarp.gui.presenter import Presenter
 from pinwarp.session.quality import Quality, quality_of
 from pinwarp.session.results import WarpResult
 
 
 class QualityPresenter:
-    """Asks for the quality of each warp; ``quality_changed`` emits it, or None without a warp.
+    """Hands on the quality of each warp; ``quality_changed`` emits it, or None without a warp.
 
-    While something moves it is asked for now and then, since nobody reads figures that run.
+    Where it takes a while, it is found by a worker once the hand rests.
 
     Parameters
     ----------
@@ -28,9 +26,8 @@ class QualityPresenter:
     def __init__(self, presenter: Presenter) -> None:
         self._presenter = presenter
         self._judge = LatestWins(quality_of)
-        self._judge.computed.connect(self._on_quality)
+        self._judge.computed.connect(self._on_judged)
         self._judge.failed.connect(self._on_failure)
-        self._asked_at = 0.0
         self.quality: Quality | None = None
         presenter.result_changed.connect(self._on_result)
 
@@ -44,14 +41,21 @@ class QualityPresenter:
         self._presenter.result_changed.disconnect(self._on_result)
         self._judge.shut_down()
 
-    def _on_result(self, result: WarpResult, at_rest: bool) -> None:
+    def _on_result(self, result: WarpResult, at_rest: bool, quality: Quality | None) -> None:
+        if quality is not None:
+            self._on_quality(quality)
+            return
         if result.factor is not None and not result.factor.has_modes:
             # The eigenvalues follow once the hand rests, and this is asked again.
             return
-        now = time.monotonic()
-        if at_rest or now - self._asked_at > TABLE_PAUSE:
-            self._asked_at = now
+        if at_rest:
             self._judge.request(result)
+
+    def _on_judged(self, quality: Quality | None) -> None:
+        now = self._presenter.result
+        # Another warp, judged along with it, may have come meanwhile.
+        if quality is None or (now is not None and quality.inputs == now.inputs):
+            self._on_quality(quality)
 
     def _on_quality(self, quality: Quality | None) -> None:
         self.quality = quality
