@@ -5,7 +5,7 @@ import threading
 import numpy as np
 import pytest
 import pyvista as pv
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.core.femur import femur_landmarks, femur_meshes
 
@@ -269,3 +269,21 @@ def test_the_femur_lies_as_far_from_its_destination_as_documented(shared_data):
     assert figures.maximum == pytest.approx(7.63, rel=0.02)
     assert np.abs(compared.forward - by_vtk(target, warped.vertices)).max() < 1e-9
     assert np.abs(compared.backward - by_vtk(warped, target.vertices)).max() < 1e-9
+
+
+@given(st.integers(0, 2**31 - 1))
+@settings(max_examples=20)
+def test_an_index_like_that_of_other_vertices_is_as_exact(seed):
+    rng = np.random.default_rng(seed)
+    faces = rng.integers(0, 30, (60, 3))
+    mesh = Mesh(rng.normal(size=(30, 3)), faces)
+    moved = mesh.with_vertices(rng.normal(size=(30, 3)))
+    places = rng.normal(size=(40, 3)) * 3
+    found = SurfaceIndex(moved, like=SurfaceIndex(mesh)).distances(places)
+    assert np.allclose(found, SurfaceIndex(moved).distances(places), rtol=0, atol=1e-12)
+
+
+def test_an_index_like_that_of_other_triangles_sorts_anew():
+    one = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    two = Mesh([[0, 0, 5], [1, 0, 5], [0, 1, 5], [1, 1, 9]], [[0, 1, 2], [1, 2, 3]])
+    assert SurfaceIndex(two, like=SurfaceIndex(one)).distances([[1, 1, 9]]).tolist() == [0.0]

@@ -37,6 +37,9 @@ class SurfaceIndex:
     mesh
         Vertices without a triangle are no part of the surface; triangles without area count as
         the edge or the place that they are.
+    like
+        The index of the same triangles over other vertices: what was close together there is
+        mostly so here, and not to sort anew takes a third of the time.
 
     Examples
     --------
@@ -45,11 +48,16 @@ class SurfaceIndex:
     [3.0, 5.0]
     """
 
-    def __init__(self, mesh: Mesh) -> None:
+    def __init__(self, mesh: Mesh, like: SurfaceIndex | None = None) -> None:
         self.mesh = mesh
         corners = mesh.vertices[mesh.faces]
         levels = max(0, math.ceil(math.log2(len(corners) / LEAF)))
-        self._order = _order(corners.min(axis=1) + corners.max(axis=1), levels)
+        same = like is not None and np.array_equal(like.mesh.faces, mesh.faces)
+        self._order: Rows = (
+            like._order
+            if like is not None and same
+            else _order(corners.min(axis=1) + corners.max(axis=1), levels)
+        )
         self._boxes = _boxes(corners[self._order], levels)
         self._triangles = _prepared(corners[self._order])
 

@@ -136,15 +136,20 @@ class SurfaceMap:
         return self.kind.levels(self.values)
 
 
-def distance_map(warped: Mesh, destination: Mesh, index: SurfaceIndex | None = None) -> SurfaceMap:
+def distance_map(
+    warped: Mesh,
+    destination: Mesh,
+    index_warped: SurfaceIndex | None = None,
+    index_destination: SurfaceIndex | None = None,
+) -> SurfaceMap:
     """Map how far the warped source lies from the destination.
 
     Parameters
     ----------
     warped, destination
         In the destination's frame and unit.
-    index
-        The destination's, where it is built already.
+    index_warped, index_destination
+        Their indexes, where they are built already.
 
     Examples
     --------
@@ -153,7 +158,9 @@ def distance_map(warped: Mesh, destination: Mesh, index: SurfaceIndex | None = N
     >>> distance_map(low, high).values.tolist()
     [1.0, 1.0, 1.0]
     """
-    compared = compare_surfaces(warped, destination, index_b=index)
+    compared = compare_surfaces(
+        warped, destination, index_a=index_warped, index_b=index_destination
+    )
     both = (compared.forward[on_surface(warped)], compared.backward[on_surface(destination)])
     return _map(MapKind.DISTANCE, compared.forward, *both, comparison=compared)
 

@@ -74,6 +74,7 @@ class Surveyor:
 
     def __init__(self) -> None:
         self._index: SurfaceIndex | None = None
+        self._index_warped: SurfaceIndex | None = None
         self._result: WarpResult | None = None
         self._destination: Mesh | None = None
         self._determinant = np.zeros(0)
@@ -147,7 +148,9 @@ class Surveyor:
                 assert result.vertices is not None, "a warp at rest has its vertices"
                 assert self._destination is not None, "else the map would be missing"
                 warped = mesh.with_vertices(result.vertices)
-                made = (distance_map(warped, self._destination, self._index_of(self._destination)),)
+                self._index_warped = SurfaceIndex(warped, like=self._index_warped)
+                index = self._index_of(self._destination)
+                made = (distance_map(warped, self._destination, self._index_warped, index),)
             case MapKind.VOLUME:
                 sign = -1 if self._folds is not None and self._folds.mirrors else 1
                 made = (volume_map(sign * self._determinant, mesh, self._taken_out),)
