@@ -197,3 +197,13 @@ def test_a_session_without_pairs_says_so(pinwarp_command, session, tmp_path):
     outcome = pinwarp_command("warp", session, "-o", tmp_path / "x.ply", exit_code=2)
     assert "There is no pair yet" in outcome.stderr
     assert "Traceback" not in outcome.output
+
+
+def test_a_source_that_moved_is_found_again_by_its_content(
+    pinwarp_command, session, study, tmp_path
+):
+    expected = warped_mesh(read_session(session))
+    (study / "source.ply").rename(study / "renamed.ply")
+    out = tmp_path / "a.ply"
+    pinwarp_command("warp", session, "-o", out)
+    assert np.allclose(read_mesh(out).mesh.vertices, expected.vertices)

@@ -53,8 +53,21 @@ def test_the_case_of_the_name_does_not_matter(tmp_path: Path) -> None:
     assert find_mesh(LOST, [put(tmp_path / "Femur.STL").parent]).is_same
 
 
+def test_a_mesh_that_was_renamed_is_found_by_its_hash(tmp_path: Path) -> None:
+    put(tmp_path / "tibia.stl", b"another bone")
+    path = put(tmp_path / "left femur.stl")
+    found = find_mesh(LOST, [tmp_path])
+    assert (found.path, found.is_same) == (path, True)
+
+
+def test_a_renamed_mesh_comes_before_another_of_the_same_name(tmp_path: Path) -> None:
+    put(tmp_path / "femur.stl", b"another bone")
+    path = put(tmp_path / "old femur.stl")
+    assert find_mesh(LOST, [tmp_path]).path == path
+
+
 def test_a_mesh_that_is_nowhere_is_not_found(tmp_path: Path) -> None:
-    put(tmp_path / "tibia.stl")
+    put(tmp_path / "tibia.stl", b"another bone")
     put(tmp_path / ".hidden" / "femur.stl")
     assert find_mesh(LOST, [tmp_path, tmp_path / "missing"]) is None
 

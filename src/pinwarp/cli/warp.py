@@ -42,14 +42,16 @@ def warp(
 
     In a folder femur.ply becomes femur_warped.ply. Inputs are never replaced.
     """
-    opened = with_options(read_session(session, meshes=()), penalty, components, blend)
+    # Only what is to be warped is read, or looked for where it has moved.
+    meshes = () if inputs else (Side.SOURCE,)
+    opened = with_options(read_session(session, meshes=meshes), penalty, components, blend)
     if not inputs and opened.source is None:
         raise PinwarpError(f"{session.name} has no source mesh: name the files to warp.")
     sources = inputs or ([] if opened.source is None else [opened.source.path])
-    meshes = [file.path for file in (opened.source, opened.destination) if file is not None]
-    outputs = outputs_of(sources, out, kept=[session, *meshes], force=force)
+    files = [file.path for file in (opened.source, opened.destination) if file is not None]
+    outputs = outputs_of(sources, out, kept=[session, *files], force=force)
     if opened.source is not None and (axes := opened.source.mirrored):
-        opened = with_meshes(opened, [Side.SOURCE])
+        opened = with_meshes(opened, [Side.SOURCE], session.absolute().parent)
         tell_notes([f"The session mirrors its source ({axes}): so are the inputs."])
     if opened.source is not None and (factor := opened.source.scaled) != 1:
         tell_notes([f"The session scales its source by {factor:g}: so are the inputs."])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 from pinwarp.io.mesh_reference import MeshReference
@@ -13,6 +14,8 @@ from pinwarp.io.reading import hash_of
 # Somebody keeps their sessions in the home folder: looking around must come to an end.
 DEEPEST = 4
 MOST_FOLDERS = 1000
+# So many meshes of another name are read to compare their hashes.
+MOST_READ = 30
 
 
 @dataclass(frozen=True)
@@ -51,7 +54,8 @@ def find_mesh(
     Returns
     -------
     FoundMesh or None
-        The first file with the right hash, else the first of the right name, if there is one.
+        The first file of that name with the right hash; else a mesh of any name with the right
+        hash that lies in one of the folders themselves; else the first of the right name.
 
     Examples
     --------
@@ -67,21 +71,37 @@ def find_mesh(
     """
     # A mesh that moved between systems may have changed the case of its name.
     name = reference.path.name.casefold()
-    first = None
-    for path in _files(folders, progress or (lambda _share: None)):
+    folders, first = list(folders), None
+    for path in _files(folders, DEEPEST, progress or (lambda _share: None)):
         if path.name.casefold() != name:
             continue
         if reference.sha256 and hash_of(path, progress=progress) == reference.sha256:
             return FoundMesh(path, True)
         first = first or FoundMesh(path, False)
-    return first
+    renamed = _of_hash(reference, folders, progress) if reference.sha256 else None
+    return renamed or first
 
 
-def _files(folders: Iterable[Path], progress: Callable[[float], None]) -> Iterator[Path]:
+def _of_hash(
+    reference: MeshReference, folders: Iterable[Path], progress: Callable[[float], None] | None
+) -> FoundMesh | None:
+    """Look for a mesh under another name; reading every file is for a few of them."""
+    suffix = reference.path.suffix.lower()
+    files = _files(folders, 0, lambda _share: None)
+    alike = (path for path in files if path.suffix.lower() == suffix)
+    for path in islice(alike, MOST_READ):
+        if hash_of(path, progress=progress) == reference.sha256:
+            return FoundMesh(path, True)
+    return None
+
+
+def _files(
+    folders: Iterable[Path], deepest: int, progress: Callable[[float], None]
+) -> Iterator[Path]:
     """Yield the files in the folders, the nearest first; links to folders are not followed."""
     level = list(dict.fromkeys(folders))
     seen = 0
-    for _ in range(DEEPEST + 1):
+    for _ in range(deepest + 1):
         inner: list[Path] = []
         for folder in level:
             if seen == MOST_FOLDERS:

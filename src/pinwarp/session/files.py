@@ -8,6 +8,7 @@ from pathlib import Path
 
 from pinwarp.core.landmarks import Side
 from pinwarp.io import session_file
+from pinwarp.io.mesh_search import find_mesh
 from pinwarp.io.meshes import MeshFile, read_mesh
 from pinwarp.io.session_file import MeshReference
 from pinwarp.session.session import Session, as_seen, from_record, to_record
@@ -43,7 +44,8 @@ def read_session(path: str | Path, *, meshes: Iterable[Side] = tuple(Side)) -> S
     >>> len(session.pairs), len(session.mesh(Side.SOURCE).vertices)
     (16, 10000)
     """
-    return with_meshes(from_record(session_file.read_session(path), None, None), meshes)
+    folder = Path(path).absolute().parent
+    return with_meshes(from_record(session_file.read_session(path), None, None), meshes, folder)
 
 
 def write_session(path: str | Path, session: Session) -> None:
@@ -75,7 +77,9 @@ def write_session(path: str | Path, session: Session) -> None:
     session_file.write_session(path, to_record(session))
 
 
-def with_meshes(session: Session, sides: Iterable[Side] = tuple(Side)) -> Session:
+def with_meshes(
+    session: Session, sides: Iterable[Side] = tuple(Side), folder: Path | None = None
+) -> Session:
     """Return the session with the meshes read that it refers to, as far as they are there.
 
     Parameters
@@ -84,6 +88,8 @@ def with_meshes(session: Session, sides: Iterable[Side] = tuple(Side)) -> Sessio
         May hold references to meshes.
     sides
         Whose mesh is read.
+    folder
+        Where a mesh that moved is looked for; it is taken only if its hash is the right one.
 
     Returns
     -------
@@ -102,7 +108,13 @@ def with_meshes(session: Session, sides: Iterable[Side] = tuple(Side)) -> Sessio
     """
     for side in sides:
         reference = session.mesh_file(side)
-        if isinstance(reference, MeshReference) and reference.path.is_file():
+        if not isinstance(reference, MeshReference):
+            continue
+        if not reference.path.is_file() and folder is not None:
+            found = find_mesh(reference, [folder])
+            if found is not None and found.is_same:
+                reference = replace(reference, path=found.path)
+        if reference.path.is_file():
             session = session.with_mesh(side, _read(reference))
     return session
 
