@@ -95,6 +95,9 @@ class FindingsPresenter:
         self._show()
 
     def _on_session(self, _changed: object = None) -> None:
+        if self._editor.is_previewing:
+            # Names do not change in a drag, and its figures come by themselves.
+            return
         self._show()
         self._on_selection()
 

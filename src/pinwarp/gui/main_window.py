@@ -40,6 +40,7 @@ from pinwarp.gui.window_frame import WindowFrame
 from pinwarp.io.file_names import session_name
 from pinwarp.io.samples import sample_session
 from pinwarp.session.editor import Editor
+from pinwarp.session.session import Session
 
 
 class MainWindow(WindowFrame):
@@ -236,8 +237,11 @@ class MainWindow(WindowFrame):
 
     # What changed
 
-    def _on_session(self, _changed: object = None) -> None:
+    def _on_session(self, changed: object = None) -> None:
         editor, actions = self.editor, self.actions_by_key
+        if editor.is_previewing and isinstance(changed, Session):
+            # What is said here is about the committed session: a drag need not wait for it.
+            return
         self.setWindowTitle(f"{session_name(self.editor.path)}[*] – pinwarp")
         self.setWindowModified(editor.is_dirty)
         for key, verb, label in (

@@ -81,6 +81,10 @@ class PenaltyTuning(QObject):
         return not self.snapshots.is_sweeping
 
     def _on_quality(self, quality: Quality | None) -> None:
+        editor = self._editor
+        if editor.is_previewing and editor.session.landmarks != editor.committed.landmarks:
+            # While a landmark moves nobody looks at the curve: it follows when that is dropped.
+            return
         self._panel.show_quality(quality)
         self._actions["take_suggested"].setEnabled(self._panel.suggestion is not None)
 
