@@ -33,7 +33,7 @@ _OVERLAY = {"specular": 0.2, "specular_power": 20}
 # Key, fill and rim light: place relative to the camera, and strength.
 _LIGHTS = (((-0.5, 0.7, 1.0), 0.85), ((0.9, 0.1, 0.7), 0.42), ((0.0, 0.8, -1.0), 0.25))
 # A frame slower than this is replaced by a stand-in's while something moves.
-SLOW_FRAME = 0.040
+SLOW_FRAME = 0.030
 # Where an overlay that shows a map and the bone stand in the picture's depth: else the bone would
 # hide the half of the map that lies inside it.
 MAP_DEPTH, DEPTH_BEHIND_MAP = (0.0, 0.5), (0.5, 1.0)
