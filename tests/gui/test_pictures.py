@@ -176,6 +176,25 @@ def test_arrows_and_the_grid_are_in_the_picture_where_the_window_shows_them(samp
     assert apart(shown, hidden) > 0.0002
 
 
+def test_a_map_comes_with_its_legend(sample, tmp_path):
+    sample.trigger("map_distance")
+    view = sample.window.viewports[DESTINATION]
+    legend, shown = view.map_legend.geometry(), grabbed(view).astype(int)
+    found = picture(
+        sample, tmp_path / "map.png", view.width(), view.height(), view=2, off=("landmarks",)
+    ).astype(int)
+
+    def part(image):
+        return image[legend.top() : legend.bottom(), legend.left() : legend.right(), :3]
+
+    assert np.abs(part(found) - part(shown)).mean() < 3
+    wide = picture(
+        sample, tmp_path / "wide.png", 2 * view.width(), view.height(), view=2, off=("landmarks",)
+    ).astype(int)
+    moved = wide[legend.top() : legend.bottom(), view.width() :][:, legend.left() : legend.right()]
+    assert np.abs(moved[..., :3] - part(shown)).mean() < 3, "it keeps to the right edge"
+
+
 def test_the_session_may_go_on_while_a_picture_is_rendered(sample, tmp_path):
     """The picture is of the moment when it was ordered."""
     quiet = {"view": 2, "off": ("framed",)}

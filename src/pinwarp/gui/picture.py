@@ -40,7 +40,7 @@ class PictureOrder:
     names
         Whether those in front of the bone have their names beside them.
     framed
-        Whether titles and scale bars are painted.
+        Whether titles, scale bars and the legend of a map are painted.
     transparent
         Whether there is nothing behind the bones, else the window's background.
     """
@@ -165,5 +165,10 @@ def _paint_landmarks(image: QImage, order: PictureOrder, view: Canvas, place: QR
     painter.translate(place.topLeft())
     painter.scale(scale, scale)
     layer.render(painter, QPoint(), QRegion(), QWidget.RenderFlag(0))
+    legend = view.map_legend
+    if order.framed and legend.isVisible():
+        # As far from the right edge as in the window: colours without it say little.
+        painter.translate(layer.width() - (width - legend.x()), legend.y())
+        legend.render(painter, QPoint(), QRegion(), QWidget.RenderFlag(0))
     painter.end()
     layer.deleteLater()
