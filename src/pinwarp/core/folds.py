@@ -116,8 +116,7 @@ def folds_of(determinant: ArrayLike, mesh: Mesh, spline: Spline) -> Folds:
     if values.shape != (len(mesh.vertices),):
         raise ValueError(f"{values.shape} determinants for {len(mesh.vertices)} vertices.")
     mirrors = bool(np.linalg.det(spline.affine[1:]) < 0)
-    is_folded = np.zeros(len(values), dtype=np.bool_)
-    is_folded[mesh.faces] = ((values >= 0) if mirrors else (values <= 0))[mesh.faces]
+    is_folded = ((values >= 0) if mirrors else (values <= 0)) & mesh.on_surface
     patches = tuple(
         FoldPatch(vertices, _responsible(spline, mesh.vertices[_judged(vertices)], mirrors))
         for vertices in _connected(is_folded, mesh)

@@ -61,6 +61,14 @@ class Mesh:
         """Return the same triangles over other vertices."""
         return Mesh(vertices, self.faces)
 
+    @cached_property
+    def on_surface(self) -> NDArray[np.bool_]:
+        """Which vertices belong to a triangle; made read-only."""
+        used = np.zeros(len(self.vertices), dtype=np.bool_)
+        used[self.faces] = True
+        used.setflags(write=False)
+        return used
+
     @property
     def bounds(self) -> NDArray[np.float64]:
         """The (2, 3) lowest and highest corner of the bounding box."""

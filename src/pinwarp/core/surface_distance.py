@@ -324,6 +324,6 @@ def compare_surfaces(
     return SurfaceComparison(
         forward,
         backward,
-        DistanceFigures.of(forward[np.unique(a.faces)]),
-        DistanceFigures.of(backward[np.unique(b.faces)]),
+        DistanceFigures.of(forward[a.on_surface]),
+        DistanceFigures.of(backward[b.on_surface]),
     )

@@ -211,7 +211,7 @@ def _folds(spline: Spline, mesh: Mesh) -> Folds:
 
 def _distance(spline: Spline, source: Mesh, destination: Mesh) -> DistanceFigures:
     distances = SurfaceIndex(destination).distances(spline.evaluate(source.vertices))
-    return DistanceFigures.of(distances[np.unique(source.faces)])
+    return DistanceFigures.of(distances[source.on_surface])
 
 
 def _about_files(session: Session) -> tuple[str, ...]:

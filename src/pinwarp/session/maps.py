@@ -161,7 +161,7 @@ def distance_map(
     compared = compare_surfaces(
         warped, destination, index_a=index_warped, index_b=index_destination
     )
-    both = (compared.forward[on_surface(warped)], compared.backward[on_surface(destination)])
+    both = (compared.forward[warped.on_surface], compared.backward[destination.on_surface])
     return _map(MapKind.DISTANCE, compared.forward, *both, comparison=compared)
 
 
@@ -184,7 +184,7 @@ def volume_map(determinant: ArrayLike, mesh: Mesh, overall: float = 1.0) -> Surf
     [1.0, 2.0, 0.5]
     """
     values = np.asarray(determinant, dtype=np.float64) / overall**3
-    return _map(MapKind.VOLUME, values, values[on_surface(mesh)], overall=overall)
+    return _map(MapKind.VOLUME, values, values[mesh.on_surface], overall=overall)
 
 
 def stretch_maps(
@@ -206,7 +206,7 @@ def stretch_maps(
     >>> [part.highest for part in maps]
     [3.0, 0.5]
     """
-    kinds, used = (MapKind.LARGEST_STRETCH, MapKind.SMALLEST_STRETCH), on_surface(mesh)
+    kinds, used = (MapKind.LARGEST_STRETCH, MapKind.SMALLEST_STRETCH), mesh.on_surface
     largest, smallest = (
         _map(kind, values / overall, values[used] / overall, overall=overall)
         for kind, values in zip(kinds, stretches(jacobian), strict=True)
@@ -234,7 +234,7 @@ def uncertainty_map(prediction: Prediction, mesh: Mesh) -> SurfaceMap:
     >>> uncertainty_map(prediction, mesh).suggestion.position
     (9.0, 0.0, 0.0)
     """
-    values, used = prediction.standard_deviation(mesh.vertices), on_surface(mesh)
+    values, used = prediction.standard_deviation(mesh.vertices), mesh.on_surface
     row = int(np.argmax(np.where(used, values, -1.0)))
     suggestion = Suggestion(as_position(mesh.vertices[row]), float(values[row]))
     return _map(MapKind.UNCERTAINTY, values, values[used], suggestion=suggestion)
@@ -278,13 +278,6 @@ def must_be_relative(size: float) -> bool:
     (False, True)
     """
     return not 1 / SAME_SIZE <= size <= SAME_SIZE
-
-
-def on_surface(mesh: Mesh) -> NDArray[np.bool_]:
-    """Return which vertices belong to a triangle."""
-    used = np.zeros(len(mesh.vertices), dtype=np.bool_)
-    used[mesh.faces] = True
-    return used
 
 
 def automatic_range(kind: MapKind, values: ArrayLike) -> Range:

@@ -109,10 +109,6 @@ class Quality:
         """
         return named_findings(self.findings, self.inputs, session)
 
-    def finding_rows(self, row: int) -> tuple[Finding, ...]:
-        """Return the findings that a pair has a part in."""
-        return tuple(finding for finding in self.findings if row in finding.rows)
-
 
 def named_findings(
     findings: Iterable[Finding], inputs: WarpInputs, session: Session

@@ -326,7 +326,7 @@ def is_rounding(length: float, place: Position) -> bool:
     >>> is_rounding(1e-12, (0.0, 40.0, 3.0)), is_rounding(1e-3, (0.0, 40.0, 3.0))
     (True, False)
     """
-    return length < 1e-9 * max(*map(abs, place), 1e-300)
+    return length < ROUNDING * max(*map(abs, place), 1e-300)
 
 
 def _solves_the_same(a: WarpInputs, b: WarpInputs) -> bool:
