@@ -13,9 +13,9 @@ from rich.table import Table
 
 import pinwarp
 from pinwarp.cli.options import SessionFile
-from pinwarp.session import check as checking
-from pinwarp.session.exports import applied_in_words
-from pinwarp.session.files import read_session
+from pinwarp.session.judging import check as checking
+from pinwarp.session.keeping.files import read_session
+from pinwarp.session.outputs.exports import applied_in_words
 from pinwarp.session.session import Session
 
 FLAGGED = 1

@@ -15,10 +15,10 @@ from qtpy.QtWidgets import QApplication
 from threadpoolctl import threadpool_limits
 
 from pinwarp.core import kernel, surface_distance
-from pinwarp.gui.dialogs import Dialogs
-from pinwarp.gui.documents import Opening
-from pinwarp.gui.fast_view import default_format
-from pinwarp.gui.main_window import MainWindow
+from pinwarp.gui.files.documents import Opening
+from pinwarp.gui.tasks.dialogs import Dialogs
+from pinwarp.gui.views.fast_view import default_format
+from pinwarp.gui.window.main_window import MainWindow
 from pinwarp.io.samples import sample_session
 
 # Drawing a million triangles in software takes a while; a minute means that something hangs.
