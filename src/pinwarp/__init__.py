@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from pinwarp.session.session import Session
     from pinwarp.tps3d import PenaltyConvention, TPSCoefficients3D, solve_coefficients
 
-__version__ = "0.1.0"
+from pinwarp.version import __version__
 
 __all__ = [
     "Check",

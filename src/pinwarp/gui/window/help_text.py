@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import pinwarp
+from pinwarp.version import __version__
 
 ABOUT = (
-    f"<b>pinwarp {pinwarp.__version__}</b><p>Pair landmarks on two bones and watch a thin-plate "
+    f"<b>pinwarp {__version__}</b><p>Pair landmarks on two bones and watch a thin-plate "
     "spline warp one into the other.</p><p>MIT licence.</p>"
 )
 

@@ -7,7 +7,6 @@ from datetime import datetime
 
 import numpy as np
 
-import pinwarp
 from pinwarp.core.landmarks import Side
 from pinwarp.core.quality import PenaltyCurve
 from pinwarp.io.chart import Line, Mark, line_chart
@@ -18,6 +17,7 @@ from pinwarp.session.judging.survey import Survey
 from pinwarp.session.outputs.exports import applied_in_words
 from pinwarp.session.session import Session
 from pinwarp.session.warp.solver import WarpResult
+from pinwarp.version import __version__
 
 LEFT_OUT_COLOUR, RESIDUAL_COLOUR, SUGGESTED_COLOUR = "#0072B2", "#8b919a", "#009E73"
 _AXES = "xyz"
@@ -54,7 +54,7 @@ def report_of(
     found = sorted((*quality.findings, *survey.findings), key=lambda one: not one.is_grave)
     return Report(
         title=title,
-        made=f"Made by pinwarp {pinwarp.__version__} on {made:%d %B %Y at %H:%M} "
+        made=f"Made by pinwarp {__version__} on {made:%d %B %Y at %H:%M} "
         f"(Python {platform.python_version()}, numpy {np.__version__})",
         facts=_facts(session, result),
         findings=tuple(finding.describe(names, unit) for finding in found),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import pinwarp
 from pinwarp.core.components import Components, applied
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.factor import SourceFactor, factorise
@@ -13,6 +12,7 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import Matrix, Spline, solve
 from pinwarp.io.coefficients import Coefficients
 from pinwarp.session.session import Session
+from pinwarp.version import __version__
 
 _IN_WORDS = {
     Components.FULL: "the full warp",
@@ -134,7 +134,7 @@ def session_coefficients(session: Session) -> Coefficients:
         destination_mirrored=destination.mirrored if destination is not None else "",
         source_scaled=source.scaled if source is not None else 1.0,
         destination_scaled=destination.scaled if destination is not None else 1.0,
-        version=pinwarp.__version__,
+        version=__version__,
     )
 
 

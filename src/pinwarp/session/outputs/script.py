@@ -6,13 +6,13 @@ import math
 import os
 from pathlib import Path
 
-import pinwarp
 from pinwarp.core.components import Components
 from pinwarp.core.errors import PinwarpError
 from pinwarp.io.mesh_reference import MeshReference
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session.outputs.exports import applied_in_words
 from pinwarp.session.session import Session
+from pinwarp.version import __version__
 
 
 def script_of(session: Session, folder: Path) -> str:
@@ -53,7 +53,7 @@ def script_of(session: Session, folder: Path) -> str:
     changes, imports = _as_seen(session.source)
     return "\n".join(
         [
-            f'"""Warp a mesh as pinwarp {pinwarp.__version__} did: {applied_in_words(session)}, '
+            f'"""Warp a mesh as pinwarp {__version__} did: {applied_in_words(session)}, '
             f'{len(pairs)} pairs."""',
             "",
             *(["from dataclasses import replace"] if changes else []),

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import pinwarp
 from pinwarp.core.errors import FileFormatError, PinwarpError, words_of
 from pinwarp.core.landmarks import Landmark, Role, Side
 from pinwarp.io.landmark_files import LandmarkReading, read_landmarks, write_landmarks
@@ -21,6 +20,7 @@ from pinwarp.session.importing.conversion import frame_notes
 from pinwarp.session.judging.check import Check, check
 from pinwarp.session.outputs.exports import warped_mesh, warped_passengers
 from pinwarp.session.session import Session, as_seen
+from pinwarp.version import __version__
 
 # So many names are told, the others counted.
 NAMED = 3
@@ -221,7 +221,7 @@ def made_from(task: Task) -> str:
     subject, session = task.subject, task.session
     source = session.source
     parts = (
-        pinwarp.__version__,
+        __version__,
         None if source is None else (source.sha256, source.mirrored, source.scaled),
         tuple((x.name, x.source, x.role.value, x.enabled) for x in session.landmarks),
         session.warping_penalty,
