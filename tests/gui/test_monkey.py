@@ -1,7 +1,7 @@
 """Random mouse, wheel and key events at the window: nothing breaks, nothing is lost or kept.
 
-    PINWARP_MONKEY=20000 pytest -s tests/gui/test_monkey.py    many more events
-    PINWARP_MONKEY_SEED=7 pytest tests/gui/test_monkey.py      the events of a failed run again
+PINWARP_MONKEY=20000 pytest -s tests/gui/test_monkey.py    many more events
+PINWARP_MONKEY_SEED=7 pytest tests/gui/test_monkey.py      the events of a failed run again
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from tests.gui.conftest import ScriptedDialogs, close_window, open_window
 from tests.gui.monkey.monkey import Monkey
 
 from pinwarp.core.landmarks import Side
-from pinwarp.gui.dialogs import Dialogs
+from pinwarp.gui.tasks.dialogs import Dialogs
 
 LONG = int(os.environ.get("PINWARP_MONKEY", "0"))
 SEED = os.environ.get("PINWARP_MONKEY_SEED")

@@ -29,7 +29,7 @@ from tests.gui.monkey.answers import TEXTS, Answers, type_text
 from tests.gui.monkey.files import Files
 
 from pinwarp.core.landmarks import Side
-from pinwarp.gui.main_window import MainWindow
+from pinwarp.gui.window.main_window import MainWindow
 
 _LEFT, _MIDDLE, _RIGHT = (
     Qt.MouseButton.LeftButton,
@@ -260,9 +260,7 @@ class Hands:
             self._click(bar, bar.actionGeometry(action).center())
         else:
             letter = action.text()[action.text().index("&") + 1].upper()
-            QTest.keySequence(
-                self._window().windowHandle(), QKeySequence(f"Alt+{letter}")
-            )
+            QTest.keySequence(self._window().windowHandle(), QKeySequence(f"Alt+{letter}"))
         return action.text()
 
     def _touchables(self) -> list[QWidget]:

@@ -22,9 +22,9 @@ from tests.gui.monkey.hands import Hands
 from tests.gui.monkey.watch import Watch
 from vtkmodules.vtkCommonCore import vtkObjectBase
 
-from pinwarp.gui.main_window import MainWindow
+from pinwarp.gui.window.main_window import MainWindow
 from pinwarp.io.work_file import read_work
-from pinwarp.session.journal import WORK
+from pinwarp.session.keeping.journal import WORK
 from pinwarp.session.session import Session, to_record
 
 CHECK_EVERY = 100
