@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from psygnal import Signal
 from qtpy.QtWidgets import QLabel
 
 from pinwarp.core.landmarks import Side
@@ -12,6 +11,7 @@ from pinwarp.gui.guide_bar import GuideBar
 from pinwarp.gui.presenter import Presenter
 from pinwarp.session.editor import Editor
 from pinwarp.session.guide import next_incomplete, step_at
+from pinwarp.session.signals import isolated
 
 
 class Guidance:
@@ -25,7 +25,7 @@ class Guidance:
         Where they are shown.
     """
 
-    said = Signal(str)
+    said = isolated(str)
 
     def __init__(
         self,

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from psygnal import Signal
-
 from pinwarp.gui.jobs import LatestWins
 from pinwarp.gui.presenter import Presenter
 from pinwarp.session.quality import Quality, quality_of
 from pinwarp.session.results import WarpResult
+from pinwarp.session.signals import isolated
 
 
 class QualityPresenter:
@@ -21,7 +20,7 @@ class QualityPresenter:
         Where the warps come from.
     """
 
-    quality_changed = Signal(object)
+    quality_changed = isolated(object)
 
     def __init__(self, presenter: Presenter) -> None:
         self._presenter = presenter
@@ -62,4 +61,6 @@ class QualityPresenter:
         self.quality_changed.emit(quality)
 
     def _on_failure(self, error: Exception) -> None:
+        # The old figures must not pass for those of the new pairs.
+        self._on_quality(None)
         raise error
