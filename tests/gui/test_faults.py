@@ -259,9 +259,9 @@ def test_a_slot_of_qt_and_a_thread_that_fail_are_told_too(user, state_folder):
         raise LookupError("nobody caught it")
 
     window = user.window
-    window.actions_by_key["select_none"].triggered.connect(fail)
+    window.actions_by_key["fit"].triggered.connect(fail)
     with window.faults.taken_over():
-        user.trigger("select_none")
+        user.trigger("fit")
         thread = threading.Thread(target=fail)
         thread.start()
         thread.join()
@@ -335,7 +335,7 @@ def test_the_window_opens_without_folders_to_remember_in_and_says_so(nothing_lea
     dialogs = ScriptedDialogs()
     window = app.user_window(dialogs)
     window.show()
-    assert QTest.qWaitForWindowActive(window)
+    assert QTest.qWaitForWindowExposed(window)
     assert "Settings are not remembered" in window.statusBar().currentMessage()
     qtbot.waitUntil(lambda: bool(dialogs.errors))
     assert [title for title, _ in dialogs.errors] == ["Unsaved work is not being kept"]

@@ -72,6 +72,9 @@ class Faults(QObject):
             return
         frames = tuple((frame.filename, frame.lineno) for frame in traceback.extract_tb(where))
         text = "".join(traceback.format_exception(kind, error, where))
+        for kept in ("last_exc", "last_value", "last_traceback"):
+            # Python keeps the last one for debuggers, and with its frames all that they hold.
+            vars(sys).pop(kept, None)
         try:
             self._taken.emit((kind.__name__, frames), kind.__name__, text)
         except RuntimeError:  # the window is gone
