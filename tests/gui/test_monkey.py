@@ -7,14 +7,12 @@ PINWARP_MONKEY_SEED=7 pytest tests/gui/test_monkey.py      the events of a faile
 from __future__ import annotations
 
 import os
-import shutil
 
 import pytest
-from tests.gui.conftest import ScriptedDialogs, close_window, open_window
+from tests.gui.conftest import open_window
 from tests.gui.monkey.monkey import Monkey
 
 from pinwarp.core.landmarks import Side
-from pinwarp.gui.tasks.dialogs import Dialogs
 
 LONG = int(os.environ.get("PINWARP_MONKEY", "0"))
 SEED = os.environ.get("PINWARP_MONKEY_SEED")

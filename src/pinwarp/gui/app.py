@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import threading
@@ -15,6 +16,7 @@ from qtpy.QtWidgets import QApplication
 from threadpoolctl import threadpool_limits
 
 from pinwarp.core import kernel, surface_distance
+from pinwarp.core.errors import words_of
 from pinwarp.gui.files.documents import Opening
 from pinwarp.gui.views.fast_view import default_format
 from pinwarp.gui.window.main_window import MainWindow
@@ -69,9 +71,19 @@ def make_application() -> QApplication:
 
 
 def user_settings() -> QSettings:
-    """Return the settings in the user's configuration folder."""
-    folder = platformdirs.user_config_path("pinwarp", ensure_exists=True)
-    return QSettings(str(folder / "settings.ini"), QSettings.Format.IniFormat)
+    """Return the settings in the user's configuration folder.
+
+    Raises
+    ------
+    OSError
+        When nothing can be remembered there.
+    """
+    folder = platformdirs.user_config_path("pinwarp")
+    folder.mkdir(parents=True, exist_ok=True)
+    settings = QSettings(str(folder / "settings.ini"), QSettings.Format.IniFormat)
+    if not settings.isWritable() or settings.status() is QSettings.Status.AccessError:
+        raise OSError(errno.EACCES, os.strerror(errno.EACCES), settings.fileName())
+    return settings
 
 
 def no_settings() -> QSettings:
@@ -99,24 +111,51 @@ def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None)
     application = make_application()
     # The spline's own threads and BLAS's would fight over the cores.
     with threadpool_limits(limits=1, user_api="blas"):
-        dialogs = PrintedMessages() if screenshot is not None else None
-        window = (
-            MainWindow(user_settings(), state_folder=platformdirs.user_state_path("pinwarp"))
-            if screenshot is None
-            else MainWindow(no_settings(), dialogs)
-        )
+        if screenshot is None:
+            return _run_for_user(application, opening, demo=demo)
+        dialogs = PrintedMessages()
+        window = MainWindow(no_settings(), dialogs)
         window.show()
         begin(window, opening, demo=demo)
-        if screenshot is None:
-            # Loading numba takes a second of the interpreter's time: after the first picture.
-            warm_up = threading.Thread(target=_warm_up, daemon=True)
-            QTimer.singleShot(_WARM_UP_AFTER_MS, warm_up.start)
-            return int(application.exec())
         saved = save_picture(window, screenshot)
-        failed = not saved or bool(dialogs is not None and dialogs.errors)
+        failed = not saved or bool(dialogs.errors)
         window.editor.replace_all(window.editor.session, None)
         window.close()
         return 1 if failed else 0
+
+
+def _run_for_user(application: QApplication, opening: Opening, *, demo: bool) -> int:
+    window = user_window()
+    with window.faults.taken_over():
+        window.show()
+        # From the event loop: what goes wrong there must not keep the window from starting.
+        QTimer.singleShot(0, window, lambda: begin(window, opening, demo=demo))
+        # Loading numba takes a second of the interpreter's time: after the first picture.
+        warm_up = threading.Thread(target=_warm_up, daemon=True)
+        QTimer.singleShot(_WARM_UP_AFTER_MS, warm_up.start)
+        return int(application.exec())
+
+
+def user_window(dialogs: WindowDialogs | None = None) -> MainWindow:
+    """Return the window with all that the user's folders remember, or without where they cannot.
+
+    Parameters
+    ----------
+    dialogs
+        Asks and tells; the real ones when None.
+    """
+    try:
+        settings, problem = user_settings(), ""
+    except (OSError, RuntimeError) as error:  # RuntimeError: nobody knows the home folder
+        settings, problem = no_settings(), words_of(error)
+    try:
+        state_folder: Path | None = platformdirs.user_state_path("pinwarp")
+    except RuntimeError:
+        state_folder = None
+    window = MainWindow(settings, dialogs, state_folder)
+    if problem:
+        window.note("Settings are not remembered", problem)
+    return window
 
 
 def _warm_up() -> None:

@@ -8,13 +8,12 @@ from enum import StrEnum
 from pathlib import Path
 from types import MappingProxyType
 
-from psygnal import Signal
-
 from pinwarp.core.landmarks import Side
 from pinwarp.core.maps import MapKind, Range
 from pinwarp.session.edits import NAME_PATTERN
 from pinwarp.session.history import History
 from pinwarp.session.session import Session
+from pinwarp.session.signals import isolated
 
 
 @dataclass(frozen=True)
@@ -142,10 +141,10 @@ class Editor:
     'mm'
     """
 
-    session_changed = Signal(Session)
-    selection_changed = Signal(Selection)
-    view_changed = Signal(ViewState)
-    saved = Signal()
+    session_changed = isolated(Session)
+    selection_changed = isolated(Selection)
+    view_changed = isolated(ViewState)
+    saved = isolated()
 
     def __init__(self, session: Session | None = None) -> None:
         self._history = History(session or Session())

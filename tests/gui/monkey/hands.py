@@ -42,13 +42,11 @@ _SHIFT, _CTRL = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.ControlMo
 _MODIFIERS = (_NONE, _NONE, _NONE, _SHIFT, _CTRL, _SHIFT | _CTRL)
 # Mostly small: every pixel is drawn by the processor here.
 _SIZES = (*3 * ((620, 460), (560, 500), (760, 420)), (300, 200), (1300, 800), (1900, 300))
-_KEYS = tuple(
-    getattr(Qt.Key, f"Key_{name}")
-    for name in (
-        "Left Right Up Down Return Escape Tab Backtab Space Backspace Home End PageUp PageDown "
-        "F2 F10 Delete A Z 1 9 Period Minus"
-    ).split()
+_NAMED_KEYS = (
+    "Left Right Up Down Return Escape Tab Backtab Space Backspace Home End PageUp PageDown "
+    "F2 F10 Delete A Z 1 9 Period Minus"
 )
+_KEYS = tuple(getattr(Qt.Key, f"Key_{name}") for name in _NAMED_KEYS.split(" "))
 _TOUCHABLE = (
     QAbstractButton, QAbstractItemView, QAbstractSpinBox, QComboBox, QDockWidget, QHeaderView,
     QLineEdit, QMenuBar, QSlider, QSplitter, QTabBar, QToolBar,

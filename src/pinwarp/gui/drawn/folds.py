@@ -25,7 +25,10 @@ _SHINE_THROUGH = 0.5
 
 @dataclass(frozen=True, eq=False)
 class FoldedSurface:
-    """The triangles of the warped source that touch a fold, and the edges around them."""
+    """The triangles of the warped source that touch a fold, and the edges around them.
+
+    A closed part that folds as a whole has no edges around it: its rim is empty.
+    """
 
     triangles: pv.PolyData
     rim: pv.PolyData

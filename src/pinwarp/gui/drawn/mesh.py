@@ -66,7 +66,11 @@ class DrawnMesh:
         self.is_coloured = False
 
     def show(self, polydata: pv.PolyData, **look: Any) -> None:
-        """Draw a mesh that has its normals already."""
+        """Draw a mesh that has its normals already; nothing where it has no cells."""
+        if not polydata.n_cells:
+            # PyVista refuses those.
+            self.remove()
+            return
         self.polydata = polydata
         self.actor = self._plotter.add_mesh(
             polydata,

@@ -10,7 +10,6 @@ from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
-from psygnal import Signal
 from qtpy.QtCore import QObject
 from qtpy.QtGui import QAction, QActionGroup
 from scipy.spatial import KDTree
@@ -30,6 +29,7 @@ from pinwarp.gui.warp.warps import Presenter
 from pinwarp.session.editor import Editor, ViewState
 from pinwarp.session.judging.survey import Survey, Surveyor
 from pinwarp.session.session import Session
+from pinwarp.session.signals import isolated
 from pinwarp.session.warp.solver import WarpResult
 
 MAP_ACTIONS = {kind: f"map_{kind.name.lower() if kind else 'none'}" for kind in (None, *MapKind)}
@@ -77,9 +77,9 @@ class MapPresenter(QObject):
         The window.
     """
 
-    map_changed = Signal(Survey)
-    folds_changed = Signal(tuple)
-    refused = Signal(str)
+    map_changed = isolated(Survey)
+    folds_changed = isolated(tuple)
+    refused = isolated(str)
 
     def __init__(
         self,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from psygnal import Signal
 from qtpy.QtWidgets import QLabel
 
 from pinwarp.core.landmarks import Side
@@ -13,6 +12,7 @@ from pinwarp.gui.warp.warps import Presenter
 from pinwarp.io.template import read_template
 from pinwarp.session.editor import Editor
 from pinwarp.session.guide import next_incomplete, step_at, with_template
+from pinwarp.session.signals import isolated
 
 
 class Guidance:
@@ -28,7 +28,7 @@ class Guidance:
         Where they are shown.
     """
 
-    said = Signal(str)
+    said = isolated(str)
 
     def __init__(
         self,

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from psygnal import Signal
 
 from pinwarp.core.landmarks import Landmark, Side, as_position
 from pinwarp.gui.drawn.surface import Surface
@@ -16,6 +15,7 @@ from pinwarp.session.editor import Editor
 from pinwarp.session.guide import next_incomplete
 from pinwarp.session.naming import in_words
 from pinwarp.session.session import Session
+from pinwarp.session.signals import isolated
 from pinwarp.session.warp.ghost import Ghost
 
 # An arrow key moves by this share of the bone, unless a step was set.
@@ -40,7 +40,7 @@ class LandmarkRequests:
         Returns the ghost that one side shows, if any.
     """
 
-    refused = Signal(str)
+    refused = isolated(str)
 
     def __init__(
         self,

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from psygnal import Signal
-
 from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.gui.warp.warps import Presenter
 from pinwarp.session.judging.quality import Quality, quality_of
+from pinwarp.session.signals import isolated
 from pinwarp.session.warp.solver import WarpResult
 
 
@@ -21,7 +20,7 @@ class QualityPresenter:
         Where the warps come from.
     """
 
-    quality_changed = Signal(object)
+    quality_changed = isolated(object)
 
     def __init__(self, presenter: Presenter) -> None:
         self._presenter = presenter
@@ -62,4 +61,6 @@ class QualityPresenter:
         self.quality_changed.emit(quality)
 
     def _on_failure(self, error: Exception) -> None:
+        # The old figures must not pass for those of the new pairs.
+        self._on_quality(None)
         raise error

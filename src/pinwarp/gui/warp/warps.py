@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from psygnal import Signal
 
 from pinwarp.core.landmarks import Side, as_position
 from pinwarp.core.mesh import Mesh
@@ -29,11 +28,13 @@ from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.quality import Quality, quality_of
 from pinwarp.session.session import Session
+from pinwarp.session.signals import isolated
 from pinwarp.session.warp.ghost import Ghost, ghost_of
 from pinwarp.session.warp.solver import EAGER_MODES, WarpInputs, WarpResult, WarpSolver
 
 # A table of figures that run is not read: while something moves it is renewed this often (s).
 TABLE_PAUSE = 0.25
+_FAILED = "The warp could not be computed: Help > Copy Details says what went wrong."
 
 
 class _Kind(Enum):
@@ -77,7 +78,8 @@ class Presenter:
         The other views.
     """
 
-    result_changed = Signal(WarpResult, bool, object)
+    result_changed = isolated(WarpResult, bool, object)
+    _warped = isolated(_Shaded)
 
     def __init__(
         self,
@@ -104,12 +106,24 @@ class Presenter:
         self._known_ghosts: dict[Side, Ghost | None] = {}
         self._ghost_keys: dict[Side, object] = {}
         self.requests = LandmarkRequests(editor, viewports, self.ghosts.get)
+        # Each on its own: where one view fails, the others still show the session.
+        self._of_session = (
+            self._show_bones,
+            model.show_session,
+            panel.show_session,
+            self._on_looks,
+            self._ask,
+        )
         self._connect()
-        self._on_session(editor.session)
+        for show in self._of_session:
+            show(editor.session)
 
     def _connect(self) -> None:
         editor, panel = self._editor, self._panel
-        editor.session_changed.connect(self._on_session)
+        for show in self._of_session:
+            editor.session_changed.connect(show)
+        for take in (self._draw_overlay, self._show_figures, self._on_looks, self._hand_on):
+            self._warped.connect(take)
         editor.selection_changed.connect(self._on_looks)
         editor.view_changed.connect(self._on_looks)
         self._warps.computed.connect(self._on_warp)
@@ -130,7 +144,8 @@ class Presenter:
     def shut_down(self) -> None:
         """Stop the worker and let go of the editor."""
         self._warps.shut_down()
-        self._editor.session_changed.disconnect(self._on_session)
+        for show in self._of_session:
+            self._editor.session_changed.disconnect(show)
         self._editor.selection_changed.disconnect(self._on_looks)
         self._editor.view_changed.disconnect(self._on_looks)
 
@@ -156,17 +171,13 @@ class Presenter:
 
     # From the session to the screen
 
-    def _on_session(self, session: Session) -> None:
+    def _show_bones(self, session: Session) -> None:
         for side, viewport in self._viewports.items():
             viewport.show_surface(self._surface(session.mesh(side)))
             file = session.mesh_file(side)
             viewport.layer.caption = "" if file is None else _caption(file)
-        self._model.show_session(session)
-        self._panel.show_session(session)
-        self._on_looks()
-        self._ask()
 
-    def _ask(self) -> None:
+    def _ask(self, _session: Session | None = None) -> None:
         """Ask the worker for the warp of the session as it is, if it is another."""
         editor, destination = self._editor, self._viewports[Side.DESTINATION]
         if editor.is_previewing:
@@ -274,21 +285,27 @@ class Presenter:
         return self._shown[mesh]
 
     def _on_warp(self, shaded: _Shaded) -> None:
-        result, viewport = shaded.result, self._viewports[Side.DESTINATION]
         if shaded.kind is _Kind.REFINE and (
-            self.result is None or result.inputs != self.result.inputs
+            self.result is None or shaded.result.inputs != self.result.inputs
         ):
             return
-        self.result = result
-        if shaded.kind is not _Kind.REFINE:
-            if shaded.warps == (None, None):
-                viewport.hide_overlay()
-            else:
-                viewport.show_overlay(shaded.warps)
+        self.result = shaded.result
+        self._warped.emit(shaded)
+
+    def _draw_overlay(self, shaded: _Shaded) -> None:
+        viewport = self._viewports[Side.DESTINATION]
         if shaded.kind is not _Kind.PREVIEW and not self._editor.is_previewing:
             # Only now: the stand-in stays until the full mesh has caught up.
             viewport.set_warping(False)
-        now = time.monotonic()
+        if shaded.kind is _Kind.REFINE:
+            return
+        if shaded.warps == (None, None):
+            viewport.hide_overlay()
+        else:
+            viewport.show_overlay(shaded.warps)
+
+    def _show_figures(self, shaded: _Shaded) -> None:
+        result, now = shaded.result, time.monotonic()
         due = shaded.quality is not None or now - self._table_shown_at > 2 * TABLE_PAUSE
         due |= shaded.kind is not _Kind.PREVIEW
         if due:
@@ -297,12 +314,19 @@ class Presenter:
         # Each widget that changes costs a composition of the window: only the slider's is live.
         if due or result.inputs.penalty != self._editor.committed.warping_penalty:
             self._panel.show_result(result)
-        self._on_looks()
+
+    def _hand_on(self, shaded: _Shaded) -> None:
+        result = shaded.result
         self.result_changed.emit(result, shaded.kind is not _Kind.PREVIEW, shaded.quality)
         if shaded.kind is _Kind.REST and result.factor is not None and not result.factor.has_modes:
             self._warps.request_if_idle(_Request(result.inputs, _Kind.REFINE, result))
 
     def _on_failure(self, error: Exception) -> None:
+        if self._asked is not None:
+            # The old warp must not pass for that of the new pairs.
+            inputs, previewing = self._asked
+            kind = _Kind.PREVIEW if previewing else _Kind.REST
+            self._on_warp(_Shaded(WarpResult(inputs, problem=_FAILED), kind))
         raise error
 
     # The penalty

@@ -194,6 +194,9 @@ SPECS = (
     ActionSpec("link_next", "&Next Camera Link", "K", "link_linked"),
     ActionSpec("shortcuts", "&Shortcuts", "F1", "", "All keys and mouse gestures"),
     ActionSpec("about", "&About pinwarp"),
+    ActionSpec(
+        "copy_details", "Copy &Details", "", "", "Versions and what went wrong, for a report"
+    ),
     ActionSpec("about_penalty", "About the Warping &Penalty"),
     ActionSpec("about_quality", "About the &Quality Figures"),
 )

@@ -148,6 +148,13 @@ class WindowFrame(QMainWindow):
         """Say something in passing."""
         self.statusBar().showMessage(text, MESSAGE_MS)
 
+    def note(self, words: str, reason: str) -> None:
+        """Say something that holds until the window is closed."""
+        label = QLabel(words)
+        label.setToolTip(reason)
+        self.statusBar().addPermanentWidget(label)
+        self.say(f"{words}: {reason}")
+
     def restore_layout(self, settings: QSettings) -> None:
         """Put docks and window where they stood when the layout was saved."""
         for key, restore in (("geometry", self.restoreGeometry), ("layout", self.restoreState)):

@@ -13,6 +13,8 @@ from pinwarp.gui.exporting.exports import Exports
 from pinwarp.gui.exporting.file_warping import FileWarping
 from pinwarp.gui.exporting.picture_export import PictureExport
 from pinwarp.gui.exporting.report import ReportExport
+from pinwarp.gui.fault_note import FaultNote
+from pinwarp.gui.faults import Faults
 from pinwarp.gui.files.documents import Documents
 from pinwarp.gui.files.recent_files import RecentFiles
 from pinwarp.gui.files.recovery import Recovery
@@ -53,7 +55,8 @@ class MainWindow(WindowFrame):
     dialogs
         Asks and tells; the real ones when None.
     state_folder
-        Where unsaved work is kept in case the program dies; None keeps none.
+        Where unsaved work is kept in case the program dies, and the log of what went wrong; None
+        keeps neither.
     """
 
     def __init__(
@@ -64,6 +67,7 @@ class MainWindow(WindowFrame):
     ) -> None:
         super().__init__()
         self._settings = settings
+        self.faults = Faults(state_folder, self)
         self.editor = Editor()
         self.jobs = SlowJob(self)
         self.stepped = SteppedJob(self)
@@ -109,6 +113,13 @@ class MainWindow(WindowFrame):
             self.editor, self.presenter, self.viewports, self.actions_by_key, self
         )
         self.statusBar().addPermanentWidget(self.warp_presenter.note)
+        self.fault_note = FaultNote(
+            self.faults,
+            self.actions_by_key["copy_details"],
+            lambda: self.viewports[Side.SOURCE].graphics,
+            self.say,
+        )
+        self.statusBar().addPermanentWidget(self.fault_note)
         self._tasks = FileTasks(self.editor, self.jobs, self.stepped, self._dialogs)
         meshes = SessionMeshes(self._tasks, self.presenter.keep_surface)
         self.saving = Saving(self.editor, self._tasks, self._recent)
@@ -310,4 +321,5 @@ class MainWindow(WindowFrame):
         self.editor.saved.disconnect(self._on_session)
         for viewport in self.viewports.values():
             viewport.close()
+        self.faults.shut_down()
         super().closeEvent(event)

@@ -31,7 +31,7 @@ MENUS = {
         "overlay arrows @maps @grid - fit focus @sides @cameras - section wireframe - "
         "markers_larger markers_smaller - show_coordinates show_curve -"
     ),
-    "&Help": "shortcuts - about_penalty about_quality about",
+    "&Help": "shortcuts - about_penalty about_quality - copy_details about",
 }
 SUBMENUS = {
     "@recent": ("Open &Recent", ""),
