@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from pinwarp.core.landmarks import Landmark, Side
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.style.lengths import format_length
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, MESH_FILES, FileTasks, Progress
@@ -27,7 +29,7 @@ from pinwarp.session.outputs.script import script_of
 from pinwarp.session.session import Session
 
 
-class Exports:
+class Exports(Capability):
     """Asks for a file and writes.
 
     Parameters
@@ -41,6 +43,78 @@ class Exports:
     def __init__(self, editor: Editor, tasks: FileTasks[Dialogs]) -> None:
         self._editor = editor
         self._tasks = tasks
+        self.actions = (
+            *self._of_landmarks(),
+            Action(
+                "export_mesh",
+                "&Export Warped Mesh…",
+                self.ask_and_export_mesh,
+                at="File.43 tools.15",
+                keys="Ctrl+E",
+                icon="export",
+                tip="Save the warped source mesh",
+                possible=self._has_warped_mesh,
+            ),
+            Action(
+                "export_coefficients",
+                "Coe&fficients…",
+                self.export_coefficients,
+                at="export.31",
+                tip="Of the warp, as JSON or .npz",
+                possible=self._has_pairs,
+            ),
+            Action(
+                "export_script",
+                "Scr&ipt…",
+                self.export_script,
+                at="export.32",
+                tip="Python that warps the mesh again",
+                possible=self._has_warped_mesh,
+            ),
+        )
+
+    def _of_landmarks(self) -> tuple[Action, ...]:
+        return (
+            Action(
+                "export_source",
+                "&Source Landmarks…",
+                lambda: self.export_landmarks(Side.SOURCE),
+                at="export.21",
+            ),
+            Action(
+                "export_destination",
+                "&Destination Landmarks…",
+                lambda: self.export_landmarks(Side.DESTINATION),
+                at="export.22",
+            ),
+            Action(
+                "export_pairs",
+                "&Landmark Pairs…",
+                lambda: self.export_landmarks(None),
+                at="export.23",
+            ),
+            Action(
+                "export_warped",
+                "&Warped Landmarks…",
+                lambda: self.export_warped(passengers=False),
+                at="export.24",
+                tip="Where the warp carries the pairs",
+                possible=self._has_pairs,
+            ),
+            Action(
+                "export_passengers",
+                "Warped &Passengers…",
+                lambda: self.export_warped(passengers=True),
+                at="export.25",
+                tip="Where the warp carries them",
+            ),
+        )
+
+    def _has_pairs(self) -> bool:
+        return bool(self._editor.session.pairs)
+
+    def _has_warped_mesh(self) -> bool:
+        return self._has_pairs() and self._editor.session.mesh(Side.SOURCE) is not None
 
     def export_landmarks(self, side: Side | None) -> None:
         """Ask for a file and write the landmarks of one side, or the pairs."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from pinwarp.core.errors import PinwarpError
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.tasks.dialogs import Dialogs, Existing
 from pinwarp.gui.tasks.file_tasks import FileTasks, Progress
 from pinwarp.gui.tasks.jobs import Cancelled
@@ -19,7 +21,7 @@ FILES = "Meshes and landmarks ({});;All files (*)".format(
 )
 
 
-class FileWarping:
+class FileWarping(Capability):
     """Asks for files and a folder, warps them, and sums up.
 
     Parameters
@@ -33,6 +35,16 @@ class FileWarping:
     def __init__(self, editor: Editor, tasks: FileTasks[Dialogs]) -> None:
         self._editor = editor
         self._tasks = tasks
+        self.actions = (
+            Action(
+                "warp_files",
+                "&Warp Files…",
+                self.ask_and_warp,
+                at="File.45",
+                tip="Other meshes and landmarks, by the same warp",
+                possible=lambda: editor.session.pairs,
+            ),
+        )
 
     def ask_and_warp(self) -> None:
         """Ask which files are warped into which folder."""

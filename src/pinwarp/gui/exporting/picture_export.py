@@ -9,6 +9,8 @@ from qtpy.QtGui import QImage
 from qtpy.QtWidgets import QDialog, QWidget
 
 from pinwarp.core.landmarks import Side
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.exporting.animation import AnimationOrder, Ends, Motion, animation_steps, ends_of
 from pinwarp.gui.exporting.picture import PictureOrder, picture_steps
 from pinwarp.gui.exporting.picture_dialogs import AnimationDialog, PictureDialog
@@ -21,7 +23,7 @@ from pinwarp.session.editor import Editor
 from pinwarp.session.outputs.exports import applied_in_words
 
 
-class PictureExport:
+class PictureExport(Capability):
     """Asks what is wanted and where, and makes it.
 
     Parameters
@@ -50,6 +52,27 @@ class PictureExport:
         # What was chosen last is proposed again.
         self._picture = PictureOrder()
         self._animation = AnimationOrder()
+        self.actions = (
+            Action(
+                "export_picture",
+                "Pi&cture…",
+                self.ask_for_picture,
+                at="export.11",
+                tip="Of the views, at any size",
+                possible=self._has_mesh,
+            ),
+            Action(
+                "export_animation",
+                "&Animation…",
+                self.ask_for_animation,
+                at="export.12",
+                tip="Turned round, or warped and back",
+                possible=self._has_mesh,
+            ),
+        )
+
+    def _has_mesh(self) -> bool:
+        return any(self._editor.session.mesh(side) is not None for side in Side)
 
     def ask_for_picture(self) -> None:
         """Ask what a picture is to show."""

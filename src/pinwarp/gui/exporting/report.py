@@ -12,6 +12,8 @@ from qtpy.QtWidgets import QWidget
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.core.maps import MapKind
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import FileTasks, Progress
 from pinwarp.io.report import Picture, write_figures, write_report
@@ -23,7 +25,7 @@ from pinwarp.session.outputs.exports import applied_in_words
 from pinwarp.session.warp.solver import WarpInputs, WarpSolver
 
 
-class ReportExport:
+class ReportExport(Capability):
     """Asks for a file and writes the report.
 
     Parameters
@@ -49,6 +51,17 @@ class ReportExport:
         self._tasks = tasks
         self._views = views
         self._name = name
+        self.actions = (
+            Action(
+                "export_report",
+                "Export &Report…",
+                self.ask_and_export,
+                at="File.44",
+                keys="Ctrl+Shift+E",
+                tip="Pictures, pairs and quality, as HTML",
+                possible=lambda: editor.session.pairs,
+            ),
+        )
 
     def ask_and_export(self) -> None:
         """Ask for a file and write the report there, with its numbers as CSV beside it."""

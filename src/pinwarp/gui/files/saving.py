@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from pinwarp.core.errors import words_of
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.files.file_dialogs import Answer, FileDialogs, Overwrite
 from pinwarp.gui.files.recent_files import RecentFiles
 from pinwarp.gui.tasks.file_tasks import SESSION_FILES, FileTasks
@@ -16,7 +18,7 @@ from pinwarp.session.editor import Editor
 from pinwarp.session.session import to_record
 
 
-class Saving:
+class Saving(Capability):
     """Writes the session where the user wants it.
 
     Parameters
@@ -33,6 +35,20 @@ class Saving:
         self._editor = editor
         self._tasks = tasks
         self._recent = recent
+        self.actions = (
+            Action(
+                "save",
+                "&Save Session",
+                self.save,
+                at="File.31 tools.14",
+                keys="Ctrl+S",
+                icon="save",
+                tip="Save the session",
+            ),
+            Action(
+                "save_as", "Save Session &As…", self.save_as, at="File.32", keys="Ctrl+Shift+S"
+            ),
+        )
 
     def may_lose_changes(self) -> bool:
         """Ask about unsaved changes; False when the user would rather stay."""

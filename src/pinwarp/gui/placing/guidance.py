@@ -5,6 +5,8 @@ from __future__ import annotations
 from qtpy.QtWidgets import QLabel
 
 from pinwarp.core.landmarks import Side
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.placing.guide_bar import GuideBar
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, FileTasks
@@ -15,7 +17,7 @@ from pinwarp.session.guide import next_incomplete, step_at, with_template
 from pinwarp.session.signals import isolated
 
 
-class Guidance:
+class Guidance(Capability):
     """Tells the user where things stand; ``said`` emits messages for the status bar.
 
     Parameters
@@ -43,6 +45,40 @@ class Guidance:
         self._tasks = tasks
         self._bar = bar
         self._hint = hint
+        self.actions = (
+            Action(
+                "load_template",
+                "Load &Template…",
+                self.load_template,
+                at="Place.21",
+                keys="Ctrl+T",
+                tip="A list of landmarks to be asked for",
+            ),
+            Action(
+                "guide",
+                "&Guide",
+                switches=self.switch,
+                checked=lambda: editor.view.guided is not None,
+                at="Place.22 tools.32",
+                keys="G",
+                icon="guide",
+                tip="Ask for one landmark after the other",
+            ),
+            Action(
+                "set_pattern",
+                "Name Pa&ttern…",
+                self.ask_pattern,
+                at="Place.23",
+                tip="What new landmarks are called",
+            ),
+            Action(
+                "set_nudge",
+                "Nudge Ste&p…",
+                self.ask_nudge,
+                at="Place.32",
+                tip="How far an arrow key moves a landmark",
+            ),
+        )
         bar.skip_requested.connect(lambda: self._step_guide(backwards=False))
         bar.back_requested.connect(lambda: self._step_guide(backwards=True))
         bar.end_requested.connect(lambda: editor.look(guided=None))

@@ -7,7 +7,9 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.core.landmarks import Landmark, Side, as_position
+from pinwarp.core.landmarks import Landmark, Role, Side, as_position
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.drawn.surface import Surface
 from pinwarp.gui.views.viewport import Viewport
 from pinwarp.session import edits
@@ -25,7 +27,7 @@ ON_SURFACE = 1e-4
 ALL_LOCKED = "All landmarks are locked: L unlocks them."
 
 
-class LandmarkRequests:
+class Hand(Capability):
     """Turns the requests of viewports, table and menu into edits.
 
     ``refused`` emits why something was not done, in words for the user.
@@ -51,8 +53,81 @@ class LandmarkRequests:
         self._editor = editor
         self._viewports = viewports
         self._ghost_at = ghost_at
+        self.actions = (*self._on_selection(), *self._elsewhere())
         for side, viewport in viewports.items():
             self._connect(side, viewport)
+
+    def _on_selection(self) -> tuple[Action, ...]:
+        def is_selected() -> bool:
+            return bool(self._editor.selection.names)
+
+        return (
+            Action(
+                "delete_side",
+                "&Delete Position",
+                self.delete_side,
+                at="Edit.61 tools.23 row.61",
+                keys="Del Backspace",
+                icon="delete",
+                tip="On the selected side only",
+                possible=is_selected,
+            ),
+            Action(
+                "delete_landmark",
+                "Delete &Landmark",
+                self.delete_landmarks,
+                at="Edit.62 row.62",
+                keys="Ctrl+Del",
+                tip="On both sides",
+                possible=is_selected,
+            ),
+            Action(
+                "swap_destinations",
+                "Swap Dest&inations",
+                lambda: self.swap_destinations(self._editor.selection.names),
+                at="Edit.71 row.31",
+                tip="Of two landmarks",
+                possible=self._can_swap,
+            ),
+            Action(
+                "snap",
+                "S&nap to Surface",
+                self.snap,
+                at="Place.31",
+                keys="S",
+                tip="Put the selection back onto the bone",
+            ),
+        )
+
+    def _elsewhere(self) -> tuple[Action, ...]:
+        editor = self._editor
+        return (
+            Action(
+                "accept_ghost",
+                "&Accept Ghost",
+                self.accept_ghost,
+                at="Place.11",
+                keys="Space",
+                tip="Place it where it is expected",
+            ),
+            Action(
+                "lock",
+                "&Lock Landmarks",
+                switches=lambda on: editor.look(locked=on),
+                checked=lambda: editor.view.locked,
+                at="Place.33 tools.31",
+                keys="L",
+                icon="lock",
+                tip="Freeze all landmarks",
+            ),
+        )
+
+    def _can_swap(self) -> bool:
+        session, names = self._editor.session, self._editor.selection.names
+        chosen = [mark for name in names if (mark := session.landmark(name)) is not None]
+        return len(chosen) == 2 and all(
+            mark.is_complete and mark.role is Role.PAIR for mark in chosen
+        )
 
     def _connect(self, side: Side, viewport: Viewport) -> None:
         editor = self._editor

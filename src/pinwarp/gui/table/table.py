@@ -102,6 +102,7 @@ class LandmarkTable(QTableView):
 
     def show_coordinates(self, shown: bool) -> None:
         """Show or hide the columns that are there on demand."""
+        self.shows_coordinates = shown
         self._fitting = True
         for number, column in enumerate(COLUMNS):
             if column.on_demand:

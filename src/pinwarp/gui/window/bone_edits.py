@@ -2,50 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-from qtpy.QtCore import QObject
-from qtpy.QtGui import QAction
-
 from pinwarp.core.landmarks import Side
 from pinwarp.core.mirror import AXES
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
-from pinwarp.session.session import Session
 
 
-class BoneEdits(QObject):
-    """Wires the actions that change a whole side.
+class BoneEdits(Capability):
+    """What changes a whole side.
 
     Parameters
     ----------
     editor
         The truth.
-    actions
-        By their keys.
-    parent
-        The window.
     """
 
-    def __init__(self, editor: Editor, actions: Mapping[str, QAction], parent: QObject) -> None:
-        super().__init__(parent)
+    def __init__(self, editor: Editor) -> None:
         self._editor = editor
-        self._swap = actions["swap_sides"]
-        self._swap.triggered.connect(lambda _checked=False: self.swap())
-        self._mirrors = {axis: actions[f"mirror_{axis}"] for axis in AXES}
-        for axis, action in self._mirrors.items():
-            action.triggered.connect(lambda _checked=False, axis=axis: self.mirror(axis))
-        editor.session_changed.connect(self._on_session)
-        self._on_session(editor.session)
+        self.actions = (
+            Action(
+                "swap_sides",
+                "S&wap Source and Destination",
+                self.swap,
+                at="Edit.72",
+                tip="Warp the other way round",
+                possible=lambda: any(editor.session.mesh_file(side) for side in Side),
+            ),
+            *(
+                Action(
+                    f"mirror_{axis}",
+                    f"Across &{axis.upper()}",
+                    lambda axis=axis: self.mirror(axis),
+                    at=f"mirror.1{number}",
+                    tip=f"Left becomes right along {axis}",
+                    possible=self.can_mirror,
+                )
+                for number, axis in enumerate(AXES, 1)
+            ),
+        )
 
-    def shut_down(self) -> None:
-        """Let go of the editor."""
-        self._editor.session_changed.disconnect(self._on_session)
-
-    def _on_session(self, session: Session) -> None:
-        self._swap.setEnabled(any(session.mesh_file(side) is not None for side in Side))
-        for action in self._mirrors.values():
-            action.setEnabled(session.mesh(Side.SOURCE) is not None)
+    def can_mirror(self) -> bool:
+        """Whether there is a source mesh to be mirrored."""
+        return self._editor.session.mesh(Side.SOURCE) is not None
 
     def swap(self) -> None:
         """Warp the other way round."""
