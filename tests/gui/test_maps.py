@@ -16,7 +16,7 @@ from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import Side, as_position, positions
 from pinwarp.core.maps import MapKind
 from pinwarp.gui.maps.presenter import MAP_ACTIONS
-from pinwarp.gui.painted.colour_scale import ColourScale
+from pinwarp.gui.style.colour_scale import ColourScale
 from pinwarp.io.samples import assets_folder
 from pinwarp.session import edits
 from pinwarp.session.guide import with_template

@@ -8,7 +8,7 @@ from qtpy.QtGui import QColor, QPainter, QPaintEvent, QPalette, QPen, QPolygonF
 from qtpy.QtWidgets import QSizePolicy, QWidget
 
 from pinwarp.core.maps import Histogram, SurfaceMap
-from pinwarp.gui.painted.colour_scale import ColourScale
+from pinwarp.gui.style.colour_scale import ColourScale
 from pinwarp.gui.style import theme
 
 _MARGIN = 8

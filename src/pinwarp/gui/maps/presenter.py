@@ -22,7 +22,7 @@ from pinwarp.gui.drawn.folds import FoldedSurface
 from pinwarp.gui.findings.fold_note import FoldNote
 from pinwarp.gui.maps.panel import MapPanel
 from pinwarp.gui.maps.words import TITLES, note_of
-from pinwarp.gui.painted.colour_scale import ColourScale
+from pinwarp.gui.style.colour_scale import ColourScale
 from pinwarp.gui.painted.legend import LegendContent
 from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.gui.views.viewport import Viewport
