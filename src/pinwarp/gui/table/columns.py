@@ -20,7 +20,7 @@ from pinwarp.core.findings import Finding, FindingKind
 from pinwarp.core.landmarks import Landmark, LandmarkState, Position, Side, as_position
 from pinwarp.gui.painted.markers import state_icon
 from pinwarp.gui.style import theme
-from pinwarp.gui.window.actions import icon
+from pinwarp.gui.style.icons import kept_icon
 from pinwarp.io.csv_cells import as_sentence, number_of
 from pinwarp.session import edits
 from pinwarp.session.judging.quality import NamedFinding
@@ -182,12 +182,6 @@ def _tick(row: Row) -> bool | None:
 
 def _lock_icon(row: Row) -> QIcon:
     return kept_icon("locked" if row.landmark.locked else "unlock")
-
-
-@functools.cache
-def kept_icon(name: str, colour: str = "") -> QIcon:
-    """Return an icon that is drawn often, in the colour of text or in one of its own."""
-    return icon(name, colour)
 
 
 def _lock_tip(row: Row) -> str:
