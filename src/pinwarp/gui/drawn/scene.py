@@ -122,6 +122,12 @@ class DrawnScene:
             self._look()
         return changed
 
+    def draw_into(self, plotter: Any, scene: Scene) -> DrawnScene:
+        """Draw a scene in another plotter, cut from the same side."""
+        other = DrawnScene(plotter, scene.side, self._surfaces)
+        other.show(scene, self.section.direction if self.section is not None else None)
+        return other
+
     @property
     def kinds(self) -> frozenset[type[Drawable]]:
         """What is rendered, of all that can be in a scene."""
@@ -172,9 +178,11 @@ class DrawnScene:
             self._cut(self.section.direction, self.section.share)
 
     def _draw_overlay(self, overlay: Overlay | None, before: Overlay | None) -> None:
+        nothing = Overlay(None)
+        new, old = overlay or nothing, before or nothing
         for drawn, warp, drawn_before in (
-            (self._overlay, overlay and overlay.full, before and before.full),
-            (self._coarse_overlay, overlay and overlay.stand_in, before and before.stand_in),
+            (self._overlay, new.full, old.full),
+            (self._coarse_overlay, new.stand_in, old.stand_in),
         ):
             if warp is None:
                 drawn.remove()

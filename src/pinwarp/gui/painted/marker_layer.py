@@ -17,6 +17,7 @@ from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.landmarks import Position, Side
 from pinwarp.gui.painted.arrows import paint_arrow
+from pinwarp.gui.painted.legend import PaintedLegend
 from pinwarp.gui.painted.markers import (
     FAINT,
     HALO,
@@ -27,7 +28,6 @@ from pinwarp.gui.painted.markers import (
     extent,
     marker_pixmap,
 )
-from pinwarp.gui.painted.legend import PaintedLegend
 from pinwarp.gui.painted.scale_bar import paint_scale_bar
 from pinwarp.gui.scene.drawables import (
     Arrows,
@@ -53,18 +53,14 @@ class MarkerLayer(QWidget):
     ----------
     projection
         Where places are on the sheet.
-    legend
-        What labels give way to.
     parent
         What it lies on.
     """
 
-    def __init__(
-        self, projection: Projection, legend: PaintedLegend | None, parent: QWidget | None
-    ) -> None:
+    def __init__(self, projection: Projection, parent: QWidget) -> None:
         super().__init__(parent)
         self._projection = projection
-        self._legend = legend
+        self._legend: PaintedLegend | None = None
         self._scene = Scene(Side.SOURCE)
         # In this order: what comes later lies on top.
         self._painters: dict[type[Drawable], Callable[[QPainter, Any], None]] = {
@@ -88,6 +84,10 @@ class MarkerLayer(QWidget):
         self._hidden_for: object = None
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.setAttribute(Qt.WidgetAttribute.WA_NoSystemBackground)
+
+    def give_way_to(self, legend: PaintedLegend) -> None:
+        """Keep labels from under a legend."""
+        self._legend = legend
 
     @property
     def kinds(self) -> frozenset[type[Drawable]]:
@@ -137,7 +137,9 @@ class MarkerLayer(QWidget):
         distances[self.hidden()] = np.inf
         index = int(np.argmin(distances))
         # A large sign can be grabbed wherever it is seen.
-        return self.markers[index] if distances[index] <= max(within, self._signs.radius + 2) else None
+        return (
+            self.markers[index] if distances[index] <= max(within, self._signs.radius + 2) else None
+        )
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Paint what the scene holds for this sheet."""
@@ -265,9 +267,7 @@ class MarkerLayer(QWidget):
         )
         for i in order:
             marker = markers[i]
-            pixmap = marker_pixmap(
-                marker.state, marker.selected, bool(hidden[i]), ratio, radius
-            )
+            pixmap = marker_pixmap(marker.state, marker.selected, bool(hidden[i]), ratio, radius)
             x, y = places[i] - extent(radius) / 2
             painter.drawPixmap(QPointF(x, y), pixmap)
         for i in order:

@@ -61,6 +61,10 @@ class Scene:
         """Return the scene without some kinds."""
         return Scene(self.side, tuple(x for x in self.drawables if not isinstance(x, kinds)))
 
+    def only(self, *kinds: type[Drawable]) -> Scene:
+        """Return the scene with nothing but some kinds."""
+        return Scene(self.side, tuple(x for x in self.drawables if isinstance(x, kinds)))
+
     def changed_since(self, before: Scene) -> frozenset[type[Drawable]]:
         """Return the kinds that are drawn otherwise than in another scene."""
         kinds: Iterable[type[Drawable]] = {type(x) for x in (*self.drawables, *before.drawables)}

@@ -29,7 +29,6 @@ from pinwarp.session.session import Session
 from pinwarp.session.warp.pair_names import pair_names
 from pinwarp.session.warp.solver import WarpResult, is_rounding
 
-
 # With more of them selected, their labels would hide the bone.
 MOST_LABELS = 12
 

@@ -20,7 +20,7 @@ from pinwarp.gui.drawn.surfaces import Surfaces
 from pinwarp.gui.painted.legend import PaintedLegend
 from pinwarp.gui.painted.marker_layer import MarkerLayer
 from pinwarp.gui.scene.camera_pose import Matrix, Pose, best_frame, fitted
-from pinwarp.gui.scene.drawables import Bone, Drawable, GridLines, Legend, Motion, Overlay
+from pinwarp.gui.scene.drawables import Drawable, GridLines, Legend, Motion, Overlay
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.style import theme
 from pinwarp.gui.views.fast_view import FastView
@@ -48,10 +48,10 @@ class Canvas(FastView):
         super().__init__(parent)
         self.side = side
         self.is_placing_camera = False
-        self._rendered = DrawnScene(self, side, surfaces)
+        self._stage = DrawnScene(self, side, surfaces)
+        self.layer = MarkerLayer(self, self)
         self.map_legend = PaintedLegend(self)
-        self.layer = MarkerLayer(self, self.map_legend, self)
-        self.map_legend.raise_()
+        self.layer.give_way_to(self.map_legend)
         self._full_frame_seconds = 0.0
         self._orbiting = False
         self.set_background(theme.BACKGROUND_BOTTOM, top=theme.BACKGROUND_TOP)
@@ -70,7 +70,7 @@ class Canvas(FastView):
     def show_scene(self, scene: Scene) -> None:
         """Show another scene: drawn and painted is only what is new in it."""
         surface, moved = self.surface, scene.of(Motion) != self.drawn(Motion)
-        changed = self._rendered.show(scene)
+        changed = self._stage.show(scene)
         # The sheet repaints by itself: no bone is rendered anew for a label.
         self.layer.show_scene(scene)
         if scene.of(Legend) != self.map_legend.content:
@@ -91,7 +91,7 @@ class Canvas(FastView):
     @property
     def scene(self) -> Scene:
         """What is shown."""
-        return self._rendered.scene
+        return self._stage.scene
 
     def drawn(self, kind: type[Kind]) -> Kind | None:
         """Return what is shown of a kind, None where nothing is."""
@@ -100,27 +100,31 @@ class Canvas(FastView):
     @property
     def drawn_kinds(self) -> frozenset[type[Drawable]]:
         """All kinds that somebody here draws."""
-        return self._rendered.kinds | self.layer.kinds | {Legend, Motion}
+        return self._stage.kinds | self.layer.kinds | {Legend, Motion}
 
     @property
     def surface(self) -> Surface | None:
-        """This side's bone."""
-        return self._rendered.surface
+        """The bone of this side."""
+        return self._stage.surface
 
     @property
     def section(self) -> Section | None:
         """The cut through the bones."""
-        return self._rendered.section
+        return self._stage.section
+
+    def draw_into(self, plotter: pv.Plotter, scene: Scene) -> DrawnScene:
+        """Draw a scene in another plotter as it would be drawn here, cut from the same side."""
+        return self._stage.draw_into(plotter, scene)
 
     @property
     def overlay_points(self) -> NDArray | None:
         """The vertices of the overlay as drawn, None where there is none."""
-        return self._rendered.overlay_points
+        return self._stage.overlay_points
 
     @property
     def grid_lines(self) -> NDArray | None:
         """The (lines, samples, 3) positions of the grid as drawn, None where there is none."""
-        return self._rendered.grid_lines
+        return self._stage.grid_lines
 
     # Detail: a stand-in while something moves and a frame in full would be slow
 
@@ -148,7 +152,7 @@ class Canvas(FastView):
     def _choose_detail(self) -> None:
         # Smoothed edges cost half a frame in software: they can wait until things rest.
         self.renderer.SetUseFXAA(not self._is_moving)
-        self._rendered.set_coarse(self.is_coarse)
+        self._stage.set_coarse(self.is_coarse)
         self.update()
 
     def paintGL(self) -> None:
@@ -165,7 +169,7 @@ class Canvas(FastView):
     @property
     def bone(self) -> pv.PolyData | None:
         """What the camera is fitted to: this side's mesh, else the overlay, else None."""
-        return self._rendered.bone
+        return self._stage.bone
 
     def look_at_all(self, frame: Matrix | None = None) -> None:
         """Fit everything, the longest axis upright and the widest across, or from a given side."""

@@ -37,7 +37,7 @@ class Scenes(QObject):
     Attributes
     ----------
     shows : int
-        How many times scenes were shown.
+        How many scenes were shown, each another than the one before in its view.
     """
 
     _due = Signal()
@@ -74,12 +74,14 @@ class Scenes(QObject):
         if not self._is_due:
             return
         self._is_due = False
-        self.shows += 1
         for side, view in self._views.items():
             for contributor in self._contributors:
                 self._ask(contributor, side)
             parts = (self._parts.get((one, side), ()) for one in self._contributors)
-            view.show_scene(Scene(side, tuple(thing for part in parts for thing in part)))
+            scene = Scene(side, tuple(thing for part in parts for thing in part))
+            if scene != view.scene:
+                self.shows += 1
+                view.show_scene(scene)
 
     def _ask(self, contributor: Contributor, side: Side) -> None:
         """Ask for a part; where that fails, the last one stays and the others are still shown."""
