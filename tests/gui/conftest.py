@@ -162,7 +162,7 @@ class Driver:
             (Side.SOURCE, "femur_generic.ply"),
             (Side.DESTINATION, "femur_subject.ply"),
         ):
-            self.window.documents.open_mesh(side, assets_folder() / name)
+            self.window.parts.documents.open_mesh(side, assets_folder() / name)
         self.settle()
 
     def place_of(self, side: Side, position) -> QPoint:

@@ -225,7 +225,7 @@ def test_neither_inputs_nor_the_session_are_ever_replaced(sample, tmp_path):
     before = second.read_bytes()
     warp_files(sample, [first, second], tmp_path)
     assert "choose another folder" in sample.dialogs.errors[0][1]
-    sample.window.documents.open_mesh(Side.SOURCE, second)
+    sample.window.parts.documents.open_mesh(Side.SOURCE, second)
     sample.settle()
     warp_files(sample, [first], tmp_path)
     assert "choose another folder" in sample.dialogs.errors[1][1]

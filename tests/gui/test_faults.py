@@ -16,8 +16,8 @@ from tests.two_spheres import pairs, two_spheres
 
 from pinwarp.core.landmarks import Side, as_position
 from pinwarp.gui import app
-from pinwarp.gui.faults import LOG, LOG_SIZE, MOST_REPORTS, Faults
 from pinwarp.gui.warp import warps as presenter
+from pinwarp.gui.window.faults import LOG, LOG_SIZE, MOST_REPORTS, Faults
 from pinwarp.io.mesh_formats.ply import write_ply
 from pinwarp.io.work_file import read_work
 from pinwarp.session import edits
@@ -32,7 +32,7 @@ def spheres(user, tmp_path):
     for side in Side:
         path = tmp_path / f"{side.value}.ply"
         write_ply(path, two_spheres())
-        user.window.documents.open_mesh(side, path)
+        user.window.parts.documents.open_mesh(side, path)
     user.settle()
     user.editor.commit(edits.import_pairs(user.session, pairs()), "Import pairs")
     user.settle()
@@ -62,7 +62,7 @@ def test_a_part_that_folds_as_a_whole_is_drawn_without_a_rim(spheres):
     )
     assert folds._rim.actor is None
     assert folds._hidden.actor is not None
-    assert "fold" in spheres.window.maps.fold_note.text()
+    assert "fold" in spheres.window.parts.findings.fold_note.text()
 
 
 def test_work_on_it_is_kept_marked_and_labelled(spheres, state_folder):
@@ -109,7 +109,7 @@ def test_landmarks_dragged_far_off_real_bones_fold_them_and_nothing_fails(
     user, shared_data, state_folder, source, destination
 ):
     for side, name in ((SOURCE, source), (DESTINATION, destination)):
-        user.window.documents.open_mesh(side, shared_data / name)
+        user.window.parts.documents.open_mesh(side, shared_data / name)
     user.settle()
     for places in zip(*(user.places_down_the_bone(side, 8) for side in Side), strict=True):
         for side, place in zip(Side, places, strict=True):
@@ -168,7 +168,7 @@ def test_a_view_that_fails_is_told_once_and_the_work_is_kept(broken, state_folde
         move_one(broken, i + 1.0)
     assert sum("ZeroDivisionError" in message for message in said) == 1
     assert "Help > Copy Details" in next(m for m in said if "ZeroDivisionError" in m)
-    assert window.fault_note.isVisible()
+    assert window.parts.help.fault_note.isVisible()
     assert capsys.readouterr().err.count("Traceback") == 1
     assert (state_folder / LOG).read_text("utf-8").count("Traceback") == 1
     assert window.faults.count == 3
@@ -182,13 +182,13 @@ def test_a_view_that_fails_is_told_once_and_the_work_is_kept(broken, state_folde
 def test_what_there_is_to_report_is_copied_from_the_status_bar_or_the_menu(broken):
     move_one(broken, 1.0)
     window = broken.window
-    QTest.mouseClick(window.fault_note, Qt.MouseButton.LeftButton)
+    QTest.mouseClick(window.parts.help.fault_note, Qt.MouseButton.LeftButton)
     text = QGuiApplication.clipboard().text()
     for words in ("pinwarp 0.1", "Python 3.", "Graphics: ", "vtk ", "Faults: 1", "in fail"):
         assert words in text
     graphics = next(line for line in text.splitlines() if line.startswith("Graphics: "))
     assert "unknown" not in graphics
-    assert not window.fault_note.isVisible()
+    assert not window.parts.help.fault_note.isVisible()
     QGuiApplication.clipboard().clear()
     broken.trigger("copy_details")
     assert QGuiApplication.clipboard().text() == text
@@ -197,14 +197,14 @@ def test_what_there_is_to_report_is_copied_from_the_status_bar_or_the_menu(broke
 def test_without_a_fault_the_versions_are_copied(user):
     user.trigger("copy_details")
     assert QGuiApplication.clipboard().text().endswith("Faults: 0")
-    assert not user.window.fault_note.isVisible()
+    assert not user.window.parts.help.fault_note.isVisible()
 
 
 def test_broken_graphics_do_not_keep_the_details_from_being_copied(user, monkeypatch):
     def fail():
         raise RuntimeError("no context")
 
-    monkeypatch.setattr(user.window.fault_note, "_graphics", fail)
+    monkeypatch.setattr(user.window.parts.help.fault_note, "_graphics", fail)
     user.trigger("copy_details")
     assert "Graphics: unknown (no context)" in QGuiApplication.clipboard().text()
 
@@ -215,10 +215,10 @@ def test_a_warp_that_cannot_be_computed_leaves_no_old_one_and_the_next_is_drawn(
     user.open_sample()
     window, there = user.window, user.window.viewports[DESTINATION]
     with window.faults.taken_over(), monkeypatch.context() as patched:
-        patched.setattr(window.presenter.solver, "solve", lambda _inputs: 1 / 0)
+        patched.setattr(window.parts.warps.solver, "solve", lambda _inputs: 1 / 0)
         move_one(user, 1.0)
         assert there.overlay_points is None
-        assert "could not be computed" in window.presenter.result.problem
+        assert "could not be computed" in window.parts.warps.result.problem
         kept_work(user, state_folder)
     assert window.faults.count == 1
     move_one(user, 1.0)
@@ -232,18 +232,18 @@ def test_figures_that_cannot_be_computed_leave_no_old_ones(user, monkeypatch):
         raise ZeroDivisionError
 
     monkeypatch.setattr(presenter, "quality_of", lambda _result: None)
-    monkeypatch.setattr(user.window.quality._judge, "_function", fail)
+    monkeypatch.setattr(user.window.parts.quality._judge, "_function", fail)
     with user.window.faults.taken_over():
         move_one(user, 1.0)
         user.settle()
     assert user.window.faults.count >= 1
-    assert user.window.quality.quality is None
+    assert user.window.parts.quality.quality is None
 
 
 def test_an_overlay_that_cannot_be_drawn_keeps_no_figures_from_being_shown(user, monkeypatch):
     user.open_sample()
     heard = []
-    user.window.presenter.result_changed.connect(lambda *values: heard.append(values[0]))
+    user.window.parts.warps.result_changed.connect(lambda *values: heard.append(values[0]))
 
     def fail(_warps):
         raise ZeroDivisionError
@@ -342,7 +342,7 @@ def test_the_window_opens_without_folders_to_remember_in_and_says_so(nothing_lea
     assert [title for title, _ in dialogs.errors] == ["Unsaved work is not being kept"]
     app.begin(window, app.Opening(), demo=True)
     qtbot.waitUntil(lambda: window.is_settled and bool(window.editor.session.pairs), timeout=30_000)
-    window.documents.open_session(app.sample_session())
+    window.parts.documents.open_session(app.sample_session())
     qtbot.waitUntil(lambda: window.is_settled, timeout=30_000)
     window._fill_recent()
     with window.faults.taken_over():
@@ -360,7 +360,9 @@ def test_settings_of_which_nothing_makes_sense_are_not_followed(
     settings.sync()
     window = open_window(dialogs, tmp_path, state_folder)
     window._fill_recent()
-    assert [action.text() for action in window.recent_menu.actions()] == ["Nothing yet"]
+    assert [action.text() for action in window.parts.documents.recent_menu.actions()] == [
+        "Nothing yet"
+    ]
     close_window(window, dialogs)
 
 

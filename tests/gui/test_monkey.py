@@ -58,8 +58,8 @@ def test_nothing_breaks_on_the_real_femur_whatever_a_monkey_does(play, shared_da
 
     def begin(window):
         for side, name in ((Side.SOURCE, "femur_r"), (Side.DESTINATION, "subject_femur_r")):
-            window.documents.open_mesh(side, folder / f"{name}.obj")
+            window.parts.documents.open_mesh(side, folder / f"{name}.obj")
         for side, name in ((Side.SOURCE, "femur_r"), (Side.DESTINATION, "subject_femur_r")):
-            window.imports.bring_in(folder / f"{name}.landmarks.csv", side, asking=False)
+            window.parts.imports.bring_in(folder / f"{name}.landmarks.csv", side, asking=False)
 
     play(begin, seed)

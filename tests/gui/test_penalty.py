@@ -13,7 +13,7 @@ from pinwarp.core.spline import PenaltyConvention
 @pytest.fixture
 def panel(user):
     user.open_sample()
-    return user.window.panel
+    return user.window.parts.penalty.panel
 
 
 def type_into(user, field, text):
@@ -92,8 +92,8 @@ def test_below_five_pairs_the_penalty_rests_and_says_why(user):
         user.editor.select(landmark.name)
         user.trigger("delete_landmark")
     assert len(user.session.pairs) == 4
-    assert not user.window.panel.slider.isEnabled()
-    assert "five pairs" in user.window.panel.warning.text()
+    assert not user.window.parts.penalty.panel.slider.isEnabled()
+    assert "five pairs" in user.window.parts.penalty.panel.warning.text()
 
 
 def test_the_unit_is_chosen_beside_the_value(user, panel):
@@ -111,8 +111,8 @@ def test_the_overlay_can_be_hidden_and_faded(user, panel):
     viewport = user.window.viewports[Side.DESTINATION]
     user.press(Qt.Key.Key_W)
     assert not viewport._overlay.actor.GetVisibility()
-    assert not user.window.opacity.isEnabled()
+    assert not user.window.parts.overlay.opacity.isEnabled()
     user.press(Qt.Key.Key_W)
-    slider = user.window.opacity
+    slider = user.window.parts.overlay.opacity
     user.drag(slider, QPoint(slider.width() // 2, 8), QPoint(4, 8))
     assert viewport._overlay.actor.prop.opacity < 0.3

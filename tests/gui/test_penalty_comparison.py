@@ -50,19 +50,19 @@ def shown(user):
 
 
 def test_holding_b_shows_the_previous_penalty_and_letting_go_the_present_one(user):
-    present, residual = shown(user), user.window.panel.figures.residual.text()
+    present, residual = shown(user), user.window.parts.penalty.panel.figures.residual.text()
     hold(user)
     assert user.session.warping_penalty == 20
     assert user.editor.committed.warping_penalty == 5
     assert badge(user) == "B: previous penalty 20 mm (hold)"
-    assert user.window.panel.value.text() == "20"
-    assert user.window.panel.figures.residual.text() != residual
+    assert user.window.parts.penalty.panel.value.text() == "20"
+    assert user.window.parts.penalty.panel.figures.residual.text() != residual
     assert np.abs(shown(user) - present).max() > 0.01
     let_go(user)
     assert user.session.warping_penalty == 5
     assert not user.editor.is_previewing
     assert badge(user) == ""
-    assert user.window.panel.figures.residual.text() == residual
+    assert user.window.parts.penalty.panel.figures.residual.text() == residual
     assert np.abs(shown(user) - present).max() < 1e-3
 
 
@@ -81,9 +81,9 @@ def test_a_comparison_leaves_nothing_in_the_history(user):
 def test_the_key_counts_wherever_the_focus_is(user, focus):
     window = user.window
     widget = {
-        "table": window.table,
+        "table": window.parts.table.table,
         "viewport": window.viewports[Side.SOURCE],
-        "slider": window.panel.slider,
+        "slider": window.parts.penalty.panel.slider,
     }[focus]
     widget.setFocus()
     hold(user, widget)
@@ -93,7 +93,7 @@ def test_the_key_counts_wherever_the_focus_is(user, focus):
 
 
 def test_a_name_with_a_b_in_it_can_be_typed(user):
-    field = user.window.landmarks.filter
+    field = user.window.parts.table.panel.filter
     field.setFocus()
     user.qtbot.keyClicks(field, "b")
     assert field.text() == "b"
@@ -155,7 +155,7 @@ def test_a_commit_from_elsewhere_while_it_is_held_stands(user):
 
 
 def test_during_a_drag_of_the_slider_the_key_waits(user):
-    slider = user.window.panel.slider
+    slider = user.window.parts.penalty.panel.slider
     share = slider.value() / slider.maximum()
     start = QPoint(round(slider.place_of(share)), slider.height() // 2)
     end = QPoint(200, slider.height() // 2)

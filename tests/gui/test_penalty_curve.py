@@ -18,7 +18,7 @@ from pinwarp.session import edits
 @pytest.fixture
 def panel(user):
     user.open_sample()
-    return user.window.panel
+    return user.window.parts.penalty.panel
 
 
 @pytest.fixture
@@ -51,7 +51,7 @@ def painted_marker(panel) -> float:
 
 def click_plot(user, x: float, y: float) -> None:
     QTest.mouseClick(
-        user.window.panel.plot,
+        user.window.parts.penalty.panel.plot,
         Qt.MouseButton.LeftButton,
         Qt.KeyboardModifier.NoModifier,
         QPoint(round(x), round(y)),
@@ -101,7 +101,7 @@ def test_hovering_tells_the_figures_there(user, panel):
     assert "flexibility 50%" in reading
     assert "leave-one-out 4.3 mm" in reading
     assert "residual 1.51 mm" in reading
-    QTest.mouseMove(user.window.table, QPoint(5, 5))
+    QTest.mouseMove(user.window.parts.table.table, QPoint(5, 5))
     user.qtbot.waitUntil(lambda: plot.grab().toImage() == resting)
 
 

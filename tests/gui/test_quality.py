@@ -29,7 +29,7 @@ class Judge(TableUser):
 
     @property
     def findings(self):
-        return self.window.findings
+        return self.window.parts.findings.panel
 
     def said_by(self, row):
         return row.sentence.text().replace("\u200b", "")
@@ -320,7 +320,7 @@ def test_two_selected_pairs_are_swapped_from_the_row_menu(sample):
 
 
 def slide_halfway(judge, release=True):
-    slider = judge.window.panel.slider
+    slider = judge.window.parts.penalty.panel.slider
     start = QPoint(8, slider.height() // 2)
     judge.user.drag(slider, start, slider.rect().center(), release=release)
 
@@ -332,9 +332,9 @@ def test_arrows_grow_with_the_penalty_and_are_not_there_at_0(sample):
     arrows = sample.arrows(left_out=False)
     assert set(arrows) == {pair.name for pair in sample.session.pairs}
     lengths = [np.linalg.norm(np.subtract(a.start, a.end)) for a in arrows.values()]
-    residuals = sample.window.presenter.result.residuals
+    residuals = sample.window.parts.warps.result.residuals
     assert lengths == pytest.approx(residuals.tolist())
-    QTest.mouseRelease(sample.window.panel.slider, LEFT)
+    QTest.mouseRelease(sample.window.parts.penalty.panel.slider, LEFT)
     sample.user.trigger("undo")
     assert sample.layer.arrows == ()
 
@@ -394,7 +394,7 @@ def test_both_arrows_follow_a_landmark_that_is_dragged(sample):
         assert arrow.end == here
     residual = np.linalg.norm(np.subtract(sample.arrows(False)[marker.name].start, here))
     row = [pair.name for pair in sample.session.pairs].index(marker.name)
-    assert residual == pytest.approx(sample.window.presenter.result.residuals[row])
+    assert residual == pytest.approx(sample.window.parts.warps.result.residuals[row])
     QTest.keyClick(viewport, Qt.Key.Key_Escape)
     sample.user.settle()
     assert sample.session.landmark(marker.name).destination == marker.position

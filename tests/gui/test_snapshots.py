@@ -17,7 +17,7 @@ from pinwarp.session import edits
 @pytest.fixture
 def strip(user):
     user.open_sample()
-    return user.window.snapshot_strip
+    return user.window.parts.snapshots.strip
 
 
 def commit(user, penalty):
@@ -54,7 +54,7 @@ def test_a_snapshot_shows_the_bones_with_penalty_and_figures(user, strip):
     user.press(Qt.Key.Key_P)
     shot = strip.tiles[0].snapshot
     assert len(colours(shot.picture)) > 100, "a bone is no flat plate"
-    figures = user.window.panel.figures
+    figures = user.window.parts.penalty.panel.figures
     words = strip.tiles[0].words.text()
     assert "<b>40 mm</b>" in words
     assert f"{shot.flexibility:.0%}" in figures.flexibility.text()
@@ -154,4 +154,4 @@ def test_without_a_warp_there_is_nothing_to_picture(user):
     assert "no warp" in user.window.statusBar().currentMessage()
     user.trigger("sweep")
     assert "five pairs" in user.window.statusBar().currentMessage()
-    assert not user.window.snapshot_strip.isVisible()
+    assert not user.window.parts.snapshots.strip.isVisible()

@@ -166,12 +166,12 @@ def _warm_up() -> None:
 
 def begin(window: MainWindow, opening: Opening, *, demo: bool = False) -> None:
     """Offer what was lost before; without it, open what the command line names."""
-    if window.recovery.offer(instead_of=opening.paths):
+    if window.parts.recovery.offer(instead_of=opening.paths):
         return
     if demo:
-        window.documents.open_session(sample_session(), as_new=True)
+        window.parts.documents.open_session(sample_session(), as_new=True)
     else:
-        window.documents.open(opening)
+        window.parts.documents.open(opening)
 
 
 def save_picture(window: MainWindow, path: Path) -> bool:

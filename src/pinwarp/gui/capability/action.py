@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 
 from qtpy.QtCore import QObject
 from qtpy.QtGui import QAction, QActionGroup, QKeySequence
+from qtpy.QtWidgets import QHBoxLayout, QSizePolicy, QWidget, QWidgetAction
 
 from pinwarp.gui.style.icons import icon as icon_named
 
@@ -113,3 +114,15 @@ def placed(action: QAction, at: str) -> QAction:
     """Return an action that Qt made, a menu's or a widget's, with the places where it stands."""
     action.setProperty(PLACES, at)
     return action
+
+
+def tool(widget: QWidget, at: str) -> QAction:
+    """Return an action that is a widget in a toolbar, no wider than it wants to be."""
+    holder = QWidget()
+    row = QHBoxLayout(holder)
+    row.setContentsMargins(4, 0, 8, 0)
+    row.addWidget(widget)
+    holder.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Preferred)
+    action = QWidgetAction(None)
+    action.setDefaultWidget(holder)
+    return placed(action, at)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Any
 
 from qtpy.QtCore import Qt
 from qtpy.QtGui import QAction
@@ -29,12 +30,15 @@ class Panel:
         What its tab says.
     widget, area
         What it shows, and at which edge of the window.
+    height_changed
+        For a widget that is to have no more height than it needs: emits when it needs another.
     """
 
     key: str
     title: str
     widget: QWidget
     area: Qt.DockWidgetArea = RIGHT
+    height_changed: Any = None
 
 
 class Capability:
@@ -46,14 +50,18 @@ class Capability:
         For menus, toolbar and keys; where they stand is theirs to say.
     panels
         For the docks.
-    notes
-        For the status bar, where they stay.
+    above
+        Above the views, over their whole width.
+    hints, notes
+        In the status bar, at its left and right end.
     menus
         Of its own, by the place where actions of any capability may stand.
     """
 
     actions: Sequence[QAction] = ()
     panels: Sequence[Panel] = ()
+    above: Sequence[QWidget] = ()
+    hints: Sequence[QWidget] = ()
     notes: Sequence[QWidget] = ()
     menus: Mapping[str, QMenu] = MappingProxyType({})
 

@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from pinwarp.core.errors import PinwarpError, words_of
 from qtpy.QtWidgets import QMenu
 
+from pinwarp.core.errors import PinwarpError, words_of
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.capability.action import Action, placed
 from pinwarp.gui.capability.capability import Capability
@@ -27,8 +27,8 @@ from pinwarp.io.file_names import SESSION_SUFFIX, is_backup, is_session, session
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
 from pinwarp.io.meshes import MESH_SUFFIXES, MeshFile
 from pinwarp.io.reading import hash_of
-from pinwarp.io.session_file import read_session
 from pinwarp.io.samples import sample_session
+from pinwarp.io.session_file import read_session
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.keeping.recovery import OtherWindow

@@ -45,9 +45,7 @@ class Saving(Capability):
                 icon="save",
                 tip="Save the session",
             ),
-            Action(
-                "save_as", "Save Session &As…", self.save_as, at="File.32", keys="Ctrl+Shift+S"
-            ),
+            Action("save_as", "Save Session &As…", self.save_as, at="File.32", keys="Ctrl+Shift+S"),
         )
 
     def may_lose_changes(self) -> bool:

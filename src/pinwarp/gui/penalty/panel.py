@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtGui import QAction
@@ -53,8 +53,8 @@ class PenaltyPanel(QWidget):
 
     Parameters
     ----------
-    actions
-        The window's actions by key; some have a button here.
+    curve, snapshots
+        The actions that have a button here; behind the first snapshot's are the others.
     """
 
     penalty_previewed = Signal(float)
@@ -63,8 +63,8 @@ class PenaltyPanel(QWidget):
     planar_requested = Signal(bool)
     unit_requested = Signal(str)
 
-    def __init__(self, actions: Mapping[str, QAction], parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, curve: QAction, snapshots: Sequence[QAction]) -> None:
+        super().__init__()
         self._factor: SourceFactor | None = None
         self._result: WarpResult | None = None
         self._quality: Quality | None = None
@@ -96,7 +96,7 @@ class PenaltyPanel(QWidget):
         self.planar = QPushButton("Treat as planar")
         self.planar.setCheckable(True)
         self.planar.setToolTip("Keep the warp tame across the plane that the landmarks lie in")
-        self._lay_out(actions)
+        self._lay_out(curve, snapshots)
 
         self.slider.sliderPressed.connect(self._on_pressed)
         self.slider.valueChanged.connect(self._on_slid)
@@ -110,7 +110,7 @@ class PenaltyPanel(QWidget):
         self.show_session(self._session)
         self.show_result(None)
 
-    def _lay_out(self, actions: Mapping[str, QAction]) -> None:
+    def _lay_out(self, curve: QAction, snapshots: Sequence[QAction]) -> None:
         slider = QHBoxLayout()
         slider.setSpacing(theme.SPACE)
         # What stands at the curves' ends takes more room than the ends of the slider.
@@ -129,11 +129,11 @@ class PenaltyPanel(QWidget):
         buttons = QHBoxLayout()
         buttons.setSpacing(4)
         buttons.addWidget(self.suggested, 1)
-        buttons.addWidget(_tool_button(actions["show_curve"]))
+        buttons.addWidget(_tool_button(curve))
         # Kept: Python must not let go of a menu that Qt still shows.
         self._snapshot_menu = QMenu(self)
-        self._snapshot_menu.addActions([actions[x] for x in ("sweep", "clear_snapshots")])
-        snapshot = _tool_button(actions["snapshot"])
+        self._snapshot_menu.addActions(snapshots[1:])
+        snapshot = _tool_button(snapshots[0])
         snapshot.setMenu(self._snapshot_menu)
         snapshot.setPopupMode(QToolButton.ToolButtonPopupMode.MenuButtonPopup)
         buttons.addWidget(snapshot)

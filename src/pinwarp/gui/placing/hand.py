@@ -11,6 +11,7 @@ from pinwarp.core.landmarks import Landmark, Role, Side, as_position
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.drawn.surface import Surface
+from pinwarp.gui.placing.ghosts import Ghosts
 from pinwarp.gui.views.viewport import Viewport
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
@@ -18,7 +19,6 @@ from pinwarp.session.guide import next_incomplete
 from pinwarp.session.naming import in_words
 from pinwarp.session.session import Session
 from pinwarp.session.signals import isolated
-from pinwarp.session.warp.ghost import Ghost
 
 # An arrow key moves by this share of the bone, unless a step was set.
 NUDGE_SHARE = 1 / 500
@@ -38,8 +38,8 @@ class Hand(Capability):
         What is edited.
     viewports
         Where the hand is.
-    ghost_at
-        Returns the ghost that one side shows, if any.
+    ghosts
+        What a click fills, and where it is expected.
     """
 
     refused = isolated(str)
@@ -48,11 +48,11 @@ class Hand(Capability):
         self,
         editor: Editor,
         viewports: dict[Side, Viewport],
-        ghost_at: Callable[[Side], Ghost | None],
+        ghosts: Ghosts,
     ) -> None:
         self._editor = editor
         self._viewports = viewports
-        self._ghost_at = ghost_at
+        self._ghosts = ghosts
         self.actions = (*self._on_selection(), *self._elsewhere())
         for side, viewport in viewports.items():
             self._connect(side, viewport)
@@ -143,10 +143,6 @@ class Hand(Capability):
 
     # Placing
 
-    def target(self, side: Side) -> str | None:
-        """Return the landmark that a click on a side fills; None for a new one."""
-        return self._editor.view.guided or edits.next_to_place(self._editor.session, side)
-
     def place(self, side: Side, position: Iterable[float]) -> None:
         """Place the landmark that is asked for, or a new one."""
         editor = self._editor
@@ -172,7 +168,7 @@ class Hand(Capability):
     def accept_ghost(self) -> None:
         """Place the landmark that a ghost predicts, on the side that was worked on last if any."""
         side = self._editor.selection.side
-        ghost = self._ghost_at(side.other) or self._ghost_at(side)
+        ghost = self._ghosts.at(side.other) or self._ghosts.at(side)
         if ghost is None:
             self.refused.emit(
                 "There is nothing to accept: from the third pair on, a landmark placed on one side "

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable
 
 from qtpy.QtCore import QEvent, QPoint, Qt
-from qtpy.QtGui import QAction, QKeySequence, QResizeEvent
+from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QMenu, QVBoxLayout, QWidget
 
 from pinwarp.gui.style.icons import icon
 from pinwarp.gui.table.table import LandmarkTable
 
 # The words of the row menu, by the keys of the actions; "focus" is whatever the key F does.
+
 
 class FilterLine(QLineEdit):
     """A line whose Esc empties it; Down goes to the rows."""

@@ -25,6 +25,7 @@ from pinwarp.session.guide import next_incomplete
 from pinwarp.session.naming import in_words
 from pinwarp.session.session import Session
 
+
 class TablePresenter(Capability):
     """The table of landmarks, and everything between it and the editor.
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from qtpy.QtCore import QSize, Qt, Signal
-from qtpy.QtGui import QAction, QPalette
+from qtpy.QtGui import QPalette
 from qtpy.QtWidgets import (
     QComboBox,
     QFrame,
@@ -20,6 +18,7 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.components import Components
+from pinwarp.gui.capability.action import Action
 from pinwarp.gui.style import theme
 from pinwarp.gui.warp.component_list import ComponentList, Remainder
 from pinwarp.gui.warp.figures_view import FiguresView
@@ -52,8 +51,8 @@ class WarpPanel(QScrollArea):
 
     Parameters
     ----------
-    actions
-        The window's actions by key, for the buttons.
+    play
+        The action that plays the blend.
     """
 
     components_requested = Signal(object)
@@ -64,16 +63,16 @@ class WarpPanel(QScrollArea):
     grid_share_requested = Signal(float)
     copy_requested = Signal()
 
-    def __init__(self, actions: Mapping[str, QAction]) -> None:
+    def __init__(self, play: Action) -> None:
         super().__init__()
         self._session = Session()
         self._quality: Quality | None = None
         self.components = ComponentList()
         self.play = QToolButton()
-        self.play.setDefaultAction(actions["play_blend"])
+        self.play.setDefaultAction(play)
         self.play.setIconSize(QSize(18, 18))
         self.play.setAutoRaise(True)
-        self.blend = _slider("Blend", "How much of it is applied (B plays it)", 100)
+        self.blend = _slider("Blend", f"How much of it is applied ({play.keys} plays it)", 100)
         self.blend_value = QLabel()
         self.ends = QLabel(), QLabel()
         self.grid = QComboBox()

@@ -1,40 +1,37 @@
-"""Wires the editor and the views: renders what changed, turns requests into edits."""
+"""The warp of the session as it is, found by a worker while one edits."""
 
 from __future__ import annotations
 
 import time
 import weakref
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from enum import Enum, auto
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.core.landmarks import Side, as_position
+from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
-from pinwarp.core.spline import PenaltyConvention
-from pinwarp.gui.drawn.mesh import OverlayWarp
-from pinwarp.gui.drawn.surface import Surface, shading_normals, triangles
-from pinwarp.gui.penalty.panel import PenaltyPanel
-from pinwarp.gui.placing.hand import LandmarkRequests
-from pinwarp.gui.scene.scene import scene_of
-from pinwarp.gui.table.table import LandmarkModel, LandmarkTable
+from pinwarp.gui.capability.capability import Capability
+from pinwarp.gui.drawn.surface import shading_normals, triangles
+from pinwarp.gui.drawn.surfaces import Surfaces
+from pinwarp.gui.scene.drawables import Drawable, Motion, Overlay, OverlayWarp
 from pinwarp.gui.tasks.jobs import LatestWins
-from pinwarp.gui.views.viewport import Viewport
-from pinwarp.io.mesh_reference import MeshReference
-from pinwarp.io.meshes import MeshFile
-from pinwarp.session import edits
+from pinwarp.gui.views.scenes import Scenes
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.quality import Quality, quality_of
 from pinwarp.session.session import Session
 from pinwarp.session.signals import isolated
-from pinwarp.session.warp.ghost import Ghost, ghost_of
 from pinwarp.session.warp.solver import EAGER_MODES, WarpInputs, WarpResult, WarpSolver
 
 # A table of figures that run is not read: while something moves it is renewed this often (s).
 TABLE_PAUSE = 0.25
 _FAILED = "The warp could not be computed: Help > Copy Details says what went wrong."
+
+
+# In full, and as a stand-in.
+_Warps = tuple[OverlayWarp | None, OverlayWarp | None]
 
 
 class _Kind(Enum):
@@ -58,184 +55,100 @@ class _Shaded:
 
     result: WarpResult
     kind: _Kind
-    warps: tuple[OverlayWarp | None, OverlayWarp | None] = (None, None)
+    warps: _Warps = (None, None)
     quality: Quality | None = None
 
 
-class Presenter:
-    """Everything between the editor and the widgets; both are passed in.
+class Warps(Capability):
+    """Keeps the warp of the editor's session up to date, and draws it.
 
     ``result_changed`` emits each new warp, whether it is at rest (no drag is under way), and the
     quality of its pairs where that took no time; else it is for others to find out.
+    ``figures_changed`` emits those whose figures are to be read: while something moves, few.
 
     Parameters
     ----------
     editor
         The truth.
-    viewports
-        One per side.
-    model, table, panel
-        The other views.
+    scenes
+        Where the overlay is shown.
+    surfaces
+        Where meshes become surfaces.
+    is_slow
+        Says whether what moves is to be drawn as a stand-in.
     """
 
     result_changed = isolated(WarpResult, bool, object)
-    _warped = isolated(_Shaded)
+    figures_changed = isolated(WarpResult)
 
     def __init__(
         self,
         editor: Editor,
-        viewports: dict[Side, Viewport],
-        model: LandmarkModel,
-        table: LandmarkTable,
-        panel: PenaltyPanel,
+        scenes: Scenes,
+        surfaces: Surfaces,
+        is_slow: Callable[[], bool],
     ) -> None:
         self._editor = editor
-        self._viewports = viewports
-        self._model = model
-        self._table = table
-        self._panel = panel
-        self._surfaces: weakref.WeakKeyDictionary[Mesh, Surface] = weakref.WeakKeyDictionary()
+        self._scenes = scenes
+        self._surfaces = surfaces
+        self._is_slow = is_slow
         self.solver = WarpSolver()
-        self._warps = LatestWins(self._warp)
+        self._worker = LatestWins(self._warp)
+        self._worker.computed.connect(self._on_warp)
+        self._worker.failed.connect(self._on_failure)
         self._asked: tuple[WarpInputs, bool] | None = None
         self.result: WarpResult | None = None
-        self._quality: Quality | None = None
-        self._table_shown_at = self._judged_at = 0.0
+        self._figures_read_at = self._judged_at = 0.0
         self._shown: weakref.WeakKeyDictionary[Mesh, OverlayWarp] = weakref.WeakKeyDictionary()
-        self.ghosts: dict[Side, Ghost | None] = dict.fromkeys(Side)
-        self._known_ghosts: dict[Side, Ghost | None] = {}
-        self._ghost_keys: dict[Side, object] = {}
-        self.requests = LandmarkRequests(editor, viewports, self.ghosts.get)
-        # Each on its own: where one view fails, the others still show the session.
-        self._of_session = (
-            self._show_bones,
-            model.show_session,
-            panel.show_session,
-            self._on_looks,
-            self._ask,
-        )
-        self._connect()
-        for show in self._of_session:
-            show(editor.session)
-
-    def _connect(self) -> None:
-        editor, panel = self._editor, self._panel
-        for show in self._of_session:
-            editor.session_changed.connect(show)
-        for take in (self._draw_overlay, self._show_figures, self._on_looks, self._hand_on):
-            self._warped.connect(take)
-        editor.selection_changed.connect(self._on_looks)
-        editor.view_changed.connect(self._on_looks)
-        self._warps.computed.connect(self._on_warp)
-        self._warps.failed.connect(self._on_failure)
-        self._table.selection_requested.connect(
-            lambda names, side: editor.select(*names, side=Side(side) if side else None)
-        )
-        panel.penalty_previewed.connect(
-            lambda penalty: editor.preview(edits.set_penalty(editor.committed, penalty))
-        )
-        panel.penalty_requested.connect(self._on_penalty)
-        panel.convention_requested.connect(self._on_convention)
-        panel.planar_requested.connect(self._on_planar)
-        panel.unit_requested.connect(
-            lambda unit: editor.commit(edits.set_unit(editor.committed, unit), "Change unit")
-        )
+        self._overlay: _Warps = (None, None)
+        self._is_moving = False
+        editor.session_changed.connect(self._ask)
+        self._ask()
 
     def shut_down(self) -> None:
         """Stop the worker and let go of the editor."""
-        self._warps.shut_down()
-        for show in self._of_session:
-            self._editor.session_changed.disconnect(show)
-        self._editor.selection_changed.disconnect(self._on_looks)
-        self._editor.view_changed.disconnect(self._on_looks)
+        self._worker.shut_down()
+        self._editor.session_changed.disconnect(self._ask)
 
     @property
     def is_settled(self) -> bool:
-        """Whether what is shown follows from the session as it is."""
-        if not self._warps.is_idle or self._asked is None:
+        """Whether the warp is that of the session as it is."""
+        if not self._worker.is_idle or self._asked is None:
             return False
         asked, previewed = self._asked
         current = WarpInputs.of(self._editor.session, asked.stand_in)
         return asked == current and previewed == self._editor.is_previewing
 
-    def keep_surface(self, mesh: Mesh, surface: Surface) -> None:
-        """Remember a surface made in a loading job for when its mesh is shown."""
-        self._surfaces[mesh] = surface
-
-    def _surface(self, mesh: Mesh | None) -> Surface | None:
-        if mesh is None:
-            return None
-        if mesh not in self._surfaces:
-            self._surfaces[mesh] = Surface(mesh)
-        return self._surfaces[mesh]
-
-    # From the session to the screen
-
-    def _show_bones(self, session: Session) -> None:
-        for side, viewport in self._viewports.items():
-            viewport.show_surface(self._surface(session.mesh(side)))
-            file = session.mesh_file(side)
-            viewport.layer.caption = "" if file is None else _caption(file)
+    def drawables(self, side: Side) -> Iterator[Drawable]:
+        """Return the warped source over the destination."""
+        if side is not Side.DESTINATION:
+            return
+        view, (full, stand_in) = self._editor.view, self._overlay
+        if full is not None or stand_in is not None:
+            yield Overlay(full, stand_in, view.overlay, view.opacity, view.map_opacity)
+        if self._is_moving:
+            yield Motion()
 
     def _ask(self, _session: Session | None = None) -> None:
         """Ask the worker for the warp of the session as it is, if it is another."""
-        editor, destination = self._editor, self._viewports[Side.DESTINATION]
-        if editor.is_previewing:
-            destination.set_warping(True)
-        inputs, previewing = self._inputs(), editor.is_previewing
+        inputs, previewing = self._inputs(), self._editor.is_previewing
+        if previewing and not self._is_moving:
+            self._is_moving = True
+            self._scenes.renew()
         if (inputs, previewing) == self._asked:
             return
         self._asked = (inputs, previewing)
         kind = _Kind.PREVIEW if previewing else _Kind.REST
-        self._warps.request(_Request(inputs, kind))
+        self._worker.request(_Request(inputs, kind))
 
     def _inputs(self) -> WarpInputs:
         """Return what the warp depends on, with a stand-in where drawing in full is slow."""
         session = self._editor.session
-        surface = self._surface(session.mesh(Side.SOURCE))
-        slow = self._viewports[Side.DESTINATION].is_slow
-        stand_in = surface.stand_in if surface is not None and slow else None
+        mesh = session.mesh(Side.SOURCE)
+        stand_in = (
+            self._surfaces.of(mesh).stand_in if mesh is not None and self._is_slow() else None
+        )
         return WarpInputs.of(session, stand_in)
-
-    def _on_looks(self, _changed: Any = None) -> None:
-        editor = self._editor
-        self._table.show_selection(editor.selection)
-        for side, viewport in self._viewports.items():
-            self.ghosts[side] = self._ghost(side)
-            viewport.show_scene(
-                scene_of(
-                    side,
-                    editor.session,
-                    editor.selection,
-                    editor.view,
-                    self.result,
-                    self.ghosts[side],
-                    self._quality,
-                )
-            )
-
-    def show_quality(self, quality: Quality | None) -> None:
-        """Show where the other pairs expect the selected landmarks."""
-        self._quality = quality
-        self._on_looks()
-
-    def _ghost(self, side: Side) -> Ghost | None:
-        """Predict where the next landmark of a side should be, on that side's surface."""
-        editor, result = self._editor, self.result
-        surface = self._surface(editor.session.mesh(side))
-        if surface is None or result is None or editor.is_previewing:
-            return None
-        name = self.requests.target(side)
-        landmark = editor.session.landmark(name) if name else None
-        key = (side, landmark, result)
-        if self._ghost_keys.get(side) != key:
-            self._ghost_keys[side] = key
-            ghost = ghost_of(landmark, side, result)
-            if ghost is not None:
-                place, _ = surface.closest(ghost.position)
-                ghost = replace(ghost, position=as_position(place))
-            self._known_ghosts[side] = ghost
-        return self._known_ghosts[side]
 
     def _warp(self, request: _Request) -> _Shaded:
         """Solve and shade; runs in the worker."""
@@ -277,49 +190,34 @@ class Presenter:
             return shown
         normals = shading_normals(triangles(vertices, mesh.faces))
         # The warped surface shows its inside when it did so before, or when the warp mirrors it.
-        whole = self._surface(result.inputs.mesh)
+        whole = result.inputs.mesh
         affine = result.shown.affine[1:] if result.shown is not None else np.eye(3)
         mirrored = bool(np.linalg.det(affine) < 0)
-        inside_out = (whole is not None and whole.inside_out) != mirrored
+        inside_out = (whole is not None and self._surfaces.of(whole).inside_out) != mirrored
         self._shown[mesh] = OverlayWarp(mesh, vertices, normals, inside_out)
         return self._shown[mesh]
 
     def _on_warp(self, shaded: _Shaded) -> None:
-        if shaded.kind is _Kind.REFINE and (
-            self.result is None or shaded.result.inputs != self.result.inputs
-        ):
+        result, before = shaded.result, self.result
+        if shaded.kind is _Kind.REFINE and (before is None or result.inputs != before.inputs):
             return
-        self.result = shaded.result
-        self._warped.emit(shaded)
-
-    def _draw_overlay(self, shaded: _Shaded) -> None:
-        viewport = self._viewports[Side.DESTINATION]
-        if shaded.kind is not _Kind.PREVIEW and not self._editor.is_previewing:
+        self.result = result
+        if shaded.kind is not _Kind.REFINE:
+            same_mesh = before is not None and before.inputs.mesh is result.inputs.mesh
+            self._overlay = _over(shaded.warps, self._overlay if same_mesh else (None, None))
+        at_rest = shaded.kind is not _Kind.PREVIEW
+        if at_rest and not self._editor.is_previewing:
             # Only now: the stand-in stays until the full mesh has caught up.
-            viewport.set_warping(False)
-        if shaded.kind is _Kind.REFINE:
-            return
-        if shaded.warps == (None, None):
-            viewport.hide_overlay()
-        else:
-            viewport.show_overlay(shaded.warps)
-
-    def _show_figures(self, shaded: _Shaded) -> None:
-        result, now = shaded.result, time.monotonic()
-        due = shaded.quality is not None or now - self._table_shown_at > 2 * TABLE_PAUSE
-        due |= shaded.kind is not _Kind.PREVIEW
-        if due:
-            self._table_shown_at = now
-            self._model.show_result(result)
-        # Each widget that changes costs a composition of the window: only the slider's is live.
-        if due or result.inputs.penalty != self._editor.committed.warping_penalty:
-            self._panel.show_result(result)
-
-    def _hand_on(self, shaded: _Shaded) -> None:
-        result = shaded.result
-        self.result_changed.emit(result, shaded.kind is not _Kind.PREVIEW, shaded.quality)
+            self._is_moving = False
+        self._scenes.renew()
+        now = time.monotonic()
+        due = shaded.quality is not None or now - self._figures_read_at > 2 * TABLE_PAUSE
+        if due or at_rest:
+            self._figures_read_at = now
+            self.figures_changed.emit(result)
+        self.result_changed.emit(result, at_rest, shaded.quality)
         if shaded.kind is _Kind.REST and result.factor is not None and not result.factor.has_modes:
-            self._warps.request_if_idle(_Request(result.inputs, _Kind.REFINE, result))
+            self._worker.request_if_idle(_Request(result.inputs, _Kind.REFINE, result))
 
     def _on_failure(self, error: Exception) -> None:
         if self._asked is not None:
@@ -329,24 +227,9 @@ class Presenter:
             self._on_warp(_Shaded(WarpResult(inputs, problem=_FAILED), kind))
         raise error
 
-    # The penalty
 
-    def _on_penalty(self, penalty: float) -> None:
-        session = edits.set_penalty(self._editor.committed, penalty)
-        self._editor.commit(session, "Change penalty")
-
-    def _on_convention(self, convention: PenaltyConvention) -> None:
-        session = edits.set_convention(self._editor.committed, convention)
-        self._editor.commit(session, "Change penalty convention")
-
-    def _on_planar(self, planar: bool) -> None:
-        label = "Treat as planar" if planar else "Do not treat as planar"
-        self._editor.commit(edits.set_planar(self._editor.committed, planar), label)
-
-
-def _caption(file: MeshFile | MeshReference) -> str:
-    """Return the name of a mesh's file, and how the mesh differs from what is in it."""
-    ways = [f"mirrored: {file.mirrored}"] if file.mirrored else []
-    if file.scaled != 1:
-        ways.append(f"× {file.scaled:g}")
-    return f"{file.path.name} ({', '.join(ways)})" if ways else file.path.name
+def _over(warps: _Warps, before: _Warps) -> _Warps:
+    """Return what is drawn after a warp: of what it did not renew, the last one stays."""
+    if warps == (None, None):
+        return warps
+    return warps[0] or before[0], warps[1] or before[1]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from pinwarp.core.landmarks import Side
 from pinwarp.core.mirror import AXES
 from pinwarp.gui.capability.action import Action
@@ -34,7 +36,7 @@ class BoneEdits(Capability):
                 Action(
                     f"mirror_{axis}",
                     f"Across &{axis.upper()}",
-                    lambda axis=axis: self.mirror(axis),
+                    partial(self.mirror, axis),
                     at=f"mirror.1{number}",
                     tip=f"Left becomes right along {axis}",
                     possible=self.can_mirror,

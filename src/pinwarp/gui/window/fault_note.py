@@ -7,12 +7,12 @@ import platform
 from collections.abc import Callable
 
 from qtpy.QtCore import qVersion
-from qtpy.QtGui import QAction, QGuiApplication
+from qtpy.QtGui import QGuiApplication
 from qtpy.QtWidgets import QPushButton
 
-import pinwarp
-from pinwarp.gui.faults import Faults
 from pinwarp.gui.style import theme
+from pinwarp.gui.window.faults import Faults
+from pinwarp.version import __version__
 
 _PACKAGES = ("numpy", "scipy", "numba", "vtk", "pyvista", "pyvistaqt", "PySide6-Essentials")
 
@@ -24,8 +24,6 @@ class FaultNote(QPushButton):
     ----------
     faults
         What went wrong.
-    copy
-        The action that copies the details, whether anything went wrong or not.
     graphics
         Returns in words what draws the views.
     say
@@ -35,7 +33,6 @@ class FaultNote(QPushButton):
     def __init__(
         self,
         faults: Faults,
-        copy: QAction,
         graphics: Callable[[], str],
         say: Callable[[str], None],
     ) -> None:
@@ -48,14 +45,14 @@ class FaultNote(QPushButton):
         self.setToolTip("Copies versions and what went wrong, to be pasted into a report")
         self.hide()
         faults.told.connect(self._on_told)
-        self.clicked.connect(copy.trigger)
-        copy.triggered.connect(self._copy)
+        self.clicked.connect(self.copy)
 
     def _on_told(self, sentence: str) -> None:
         self.show()
         self._say(sentence)
 
-    def _copy(self) -> None:
+    def copy(self) -> None:
+        """Copy versions and what went wrong, whether anything did or not."""
         try:
             graphics = self._graphics()
         except Exception as error:  # broken graphics may be what is to be reported
@@ -77,7 +74,7 @@ def details(faults: Faults, graphics: str) -> str:
     """
     versions = ", ".join(f"{name} {_version(name)}" for name in _PACKAGES)
     lines = [
-        f"pinwarp {pinwarp.__version__}",
+        f"pinwarp {__version__}",
         f"Python {platform.python_version()} on {platform.platform()}",
         f"Qt {qVersion()} ({QGuiApplication.platformName()}), {versions}",
         f"Graphics: {graphics}",
