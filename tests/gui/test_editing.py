@@ -184,7 +184,8 @@ def test_below_three_pairs_there_is_no_ghost(user):
     session = edits.remove_side(session, names[1], DESTINATION)
     user.editor.commit(session, "Keep two")
     user.settle()
-    assert user.window.parts.ghosts == {SOURCE: None, DESTINATION: None}
+    ghosts = user.window.parts.ghosts
+    assert (ghosts.at(SOURCE), ghosts.at(DESTINATION)) == (None, None)
     user.press(Qt.Key.Key_Space)
     assert "nothing to accept" in user.window.statusBar().currentMessage()
 
