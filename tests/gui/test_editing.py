@@ -9,6 +9,7 @@ from qtpy.QtTest import QTest
 
 from pinwarp.core.landmarks import LandmarkState, Role, Side
 from pinwarp.session import edits
+from pinwarp.session.warp.ghost import Ghost
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
 SHIFT, CTRL = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.ControlModifier
@@ -154,17 +155,17 @@ def test_space_accepts_the_ghost_near_where_the_landmark_was(user, side):
     name = "femoral_head_anterior"
     truth = np.array(user.session.landmark(name).position(side))
     without(user, side, name)
-    ghost = user.window.presenter.ghosts[side]
+    ghost = user.window.presenter.ghost(side)
     assert ghost.name == name
     assert 0 < ghost.deviation < 30
     assert np.linalg.norm(np.array(ghost.position) - truth) < 8
-    assert user.window.viewports[side].layer.ghost == ghost
+    assert user.window.viewports[side].drawn(Ghost) == ghost
     user.press(Qt.Key.Key_Space)
     placed = user.session.landmark(name).position(side)
     assert placed == ghost.position
     assert user.window.viewports[side].surface.closest(placed)[1] < 1e-3
     assert user.editor.undo_label == f"Accept {name}"
-    assert user.window.presenter.ghosts[side] is None
+    assert user.window.presenter.ghost(side) is None
 
 
 def test_a_click_elsewhere_overrides_the_ghost(user):
@@ -174,7 +175,7 @@ def test_a_click_elsewhere_overrides_the_ghost(user):
     user.click(DESTINATION, elsewhere + QPoint(0, 60))
     placed = user.session.landmark("femoral_head_anterior").destination
     assert placed is not None
-    assert viewport.layer.ghost is None
+    assert viewport.drawn(Ghost) is None
 
 
 def test_below_three_pairs_there_is_no_ghost(user):
@@ -184,7 +185,7 @@ def test_below_three_pairs_there_is_no_ghost(user):
     session = edits.remove_side(session, names[1], DESTINATION)
     user.editor.commit(session, "Keep two")
     user.settle()
-    assert user.window.presenter.ghosts == {SOURCE: None, DESTINATION: None}
+    assert [user.window.presenter.ghost(side) for side in Side] == [None, None]
     user.press(Qt.Key.Key_Space)
     assert "nothing to accept" in user.window.statusBar().currentMessage()
 
@@ -202,7 +203,7 @@ def test_with_three_or_four_pairs_the_ghost_has_no_disc(user):
     session = edits.remove_side(session, "medial_epicondyle", DESTINATION)
     user.editor.commit(session, "Keep four")
     user.settle()
-    assert user.window.presenter.ghosts[DESTINATION].deviation is None
+    assert user.window.presenter.ghost(DESTINATION).deviation is None
 
 
 # The guide

@@ -48,7 +48,7 @@ def test_twelve_pairs_three_drags_one_disabled_and_all_the_way_back(pelvis):
         user.click(SOURCE, at)
         name = user.editor.selection.names[0]
         assert user.session.landmark(name).source is not None, f"click {number} missed"
-        if user.window.presenter.ghosts[DESTINATION] is not None:
+        if user.window.presenter.ghost(DESTINATION) is not None:
             user.press(Qt.Key.Key_Space, widget=source)
             accepted += 1
         else:

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pyvista as pv
-from numpy.typing import NDArray
 from vtkmodules.vtkCommonDataModel import vtkPlane
 
-from pinwarp.core.folds import Folds
 from pinwarp.gui.drawn.depth import Depth
 from pinwarp.gui.drawn.mesh import DrawnMesh
 from pinwarp.gui.drawn.surface import triangles
+from pinwarp.gui.scene.drawables import FoldedSurface
 from pinwarp.gui.style import theme
 
 # In the picture's depth: a little before the surface that they are a part of, and before all
@@ -21,30 +19,6 @@ from pinwarp.gui.style import theme
 RAISED = 0.9999
 BEFORE_ALL = (0.0, 0.001)
 _SHINE_THROUGH = 0.5
-
-
-@dataclass(frozen=True, eq=False)
-class FoldedSurface:
-    """The triangles of the warped source that touch a fold, and the edges around them."""
-
-    triangles: pv.PolyData
-    rim: pv.PolyData
-
-    @classmethod
-    def of(cls, folds: Folds, faces: NDArray, vertices: NDArray) -> FoldedSurface | None:
-        """Return what is folded of a warped mesh; None where nothing is."""
-        folded = faces[folds.is_folded[faces].any(axis=1)]
-        if not len(folded):
-            return None
-        rows, corners = np.unique(folded, return_inverse=True)
-        drawn = triangles(vertices[rows], corners.reshape(-1, 3))
-        rim = drawn.extract_feature_edges(
-            boundary_edges=True,
-            feature_edges=False,
-            manifold_edges=False,
-            non_manifold_edges=False,
-        )
-        return cls(drawn, rim)
 
 
 class DrawnFolds:
@@ -71,20 +45,16 @@ class DrawnFolds:
             if folded is None and drawn.actor is not None:
                 drawn.remove()
         if folded is not None:
-            self._seen.show(folded.triangles)
-            self._hidden.show(folded.triangles)
-            self._rim.show(folded.rim)
+            drawn = triangles(folded.vertices, folded.faces)
+            self._seen.show(drawn)
+            self._hidden.show(drawn)
+            self._rim.show(_edges(folded))
         self._hidden.set_depth(BEFORE_ALL)
         self._rim.set_depth(BEFORE_ALL)
 
     def set_depth(self, depth: Depth) -> None:
         """Draw them a little before a surface that takes this share of the picture's depth."""
         self._seen.set_depth((depth[0], depth[1] * RAISED))
-
-    @property
-    def is_shown(self) -> bool:
-        """Whether there are any."""
-        return self._seen.actor is not None
 
     def set_visible(self, visible: bool) -> None:
         """Draw them, or not."""
@@ -95,3 +65,11 @@ class DrawnFolds:
         """Draw only what lies on the positive side of a plane, or everything."""
         for drawn in self._all:
             drawn.set_clip(plane)
+
+
+def _edges(folded: FoldedSurface) -> pv.PolyData:
+    """Return VTK's picture of the rim."""
+    if not len(folded.rim):
+        return pv.PolyData()
+    cells = np.insert(folded.rim, 0, 2, axis=1)
+    return pv.PolyData(folded.vertices, lines=cells.ravel())

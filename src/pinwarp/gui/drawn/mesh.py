@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,16 +18,6 @@ from pinwarp.gui.drawn.surface import triangles
 _LEVELS = "map"
 # Colours are read off a map: little of the light may change them.
 _READABLE = {"ambient": 0.45, "diffuse": 0.62, "specular": 0.0}
-
-
-@dataclass(frozen=True, eq=False)
-class OverlayWarp:
-    """The warped source as drawn: triangles, vertices, normals, and whether its inside is out."""
-
-    mesh: Mesh
-    vertices: NDArray[np.float32]
-    normals: NDArray[np.float32]
-    inside_out: bool
 
 
 class DrawnMesh:
@@ -66,7 +55,11 @@ class DrawnMesh:
         self.is_coloured = False
 
     def show(self, polydata: pv.PolyData, **look: Any) -> None:
-        """Draw a mesh that has its normals already."""
+        """Draw a mesh that has its normals already; nothing where it has no cells."""
+        if not polydata.n_cells:
+            # PyVista refuses those.
+            self.remove()
+            return
         self.polydata = polydata
         self.actor = self._plotter.add_mesh(
             polydata,

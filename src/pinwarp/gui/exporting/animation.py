@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
-import pyvista as pv
 from numpy.typing import NDArray
 from qtpy.QtGui import QColor
 
 from pinwarp.core.components import Components, as_drawn
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
-from pinwarp.gui.drawn.surface import shading_normals
+from pinwarp.gui.drawn.surface import shading_normals, triangles
 from pinwarp.gui.exporting.offscreen import Offscreen, Pixels
+from pinwarp.gui.scene.drawables import FoldedSurface, GridLines, Overlay
+from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.style import theme
 from pinwarp.gui.tasks.stepped_job import Steps
 from pinwarp.gui.views.canvas import Canvas
@@ -26,7 +27,6 @@ Vertices = NDArray[np.float32]
 
 # All frames are held until they are written: 3 bytes a pixel.
 MOST_PIXELS = 120_000_000
-_OVERLAY = "overlay"
 
 
 class Motion(StrEnum):
@@ -133,9 +133,10 @@ def animation_steps(order: AnimationOrder, view: Canvas, ends: Ends | None = Non
     PinwarpError
         When there is too little memory, or no warped source to be blended.
     """
-    copy = Offscreen(view, shown=(_OVERLAY,) if ends is not None else ())
+    scene = view.scene
+    copy = Offscreen(view, scene)
     try:
-        moves = _turns(order, copy) if ends is None else _blends(order, copy, ends)
+        moves = _turns(order, copy) if ends is None else _blends(order, copy, scene, ends)
         frames = []
         for number, _moved in enumerate(moves):
             frame: Pixels = np.zeros((order.height, order.width, 4), np.uint8)
@@ -160,21 +161,19 @@ def _turns(order: AnimationOrder, copy: Offscreen) -> Iterator[None]:
         copy.camera.OrthogonalizeViewUp()
 
 
-def _blends(order: AnimationOrder, copy: Offscreen, ends: Ends) -> Iterator[None]:
+def _blends(order: AnimationOrder, copy: Offscreen, scene: Scene, ends: Ends) -> Iterator[None]:
     """Warp the overlay and take it back, gently at both ends."""
-    actor = copy.actors.get(_OVERLAY)
-    drawn = None if actor is None else pv.wrap(actor.GetMapper().GetInputDataObject(0, 0))
-    if drawn is None or drawn.n_points != len(ends.warped):
+    overlay = scene.of(Overlay)
+    warp = overlay.full if overlay is not None else None
+    if overlay is None or warp is None or len(warp.vertices) != len(ends.warped):
         raise PinwarpError("The warped source is not drawn yet: try again once it is.")
-    if "grid" in copy.actors:
-        # It is that of the whole warp, and would stand still.
-        copy.actors["grid"].SetVisibility(False)
+    # They are those of the whole warp, and would stand still.
+    bare = scene.without(GridLines, FoldedSurface)
     for share in (1 - np.cos(2 * np.pi * np.arange(order.frames) / order.frames)) / 2:
-        drawn.points[:] = ends.at(float(share))
-        drawn.GetPoints().Modified()
-        drawn.point_data["Normals"][:] = shading_normals(drawn)
-        drawn.GetPointData().GetNormals().Modified()
-        drawn.Modified()
+        vertices = ends.at(float(share))
+        normals = shading_normals(triangles(vertices, warp.mesh.faces))
+        moved = replace(warp, vertices=vertices, normals=normals)
+        copy.show(bare.with_(replace(overlay, full=moved, stand_in=None, visible=True)))
         yield
 
 

@@ -1,14 +1,14 @@
-"""A canvas's bones rendered once more, at any size, without a window.
+"""Scenes rendered once more as a canvas shows them, at any size, without a window.
 
-What is seen is copied: actors, lights and camera, with the data they draw, so that the picture
-stays one picture while the session goes on. A large picture is rendered tile by tile, each as the
-part of the whole that it is, since graphics cards limit the size of what they render.
+A scene is a value: the picture stays one picture while the session goes on. A large picture is
+rendered tile by tile, each as the part of the whole that it is, since graphics cards limit the
+size of what they render.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,14 +16,9 @@ import pyvista as pv
 from numpy.typing import NDArray
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
-from vtkmodules.vtkRenderingCore import (
-    vtkActor,
-    vtkCamera,
-    vtkProperty,
-    vtkRenderer,
-    vtkRenderWindow,
-)
+from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
+from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.views.canvas import Canvas
 
 # Larger tiles hold up the window, smaller ones draw every triangle more often.
@@ -61,60 +56,39 @@ class Tile:
 
 
 class Offscreen:
-    """Renders what a canvas shows; to be closed.
+    """Renders scenes as a canvas shows them; to be closed.
 
     Parameters
     ----------
     canvas
-        What is copied.
+        From where it is seen, and how it is cut.
+    scene
+        What is rendered first.
     tile
         The largest width and height rendered at once, in pixels.
-    shown
-        The names of actors that are copied even where they are hidden.
     """
 
-    def __init__(self, canvas: Canvas, tile: int = TILE, shown: Collection[str] = ()) -> None:
+    def __init__(self, canvas: Canvas, scene: Scene, tile: int = TILE) -> None:
         self._tile = tile
         self._view = (max(1, canvas.width()), max(1, canvas.height()))
-        self._lines: list[tuple[vtkProperty, float]] = []
-        self.renderer = vtkRenderer()
+        self._plotter: pv.Plotter | None = pv.Plotter(off_screen=True, lighting="none")
+        window, renderer = self._plotter.render_window, self._plotter.renderer
+        window.SetMultiSamples(SAMPLES)
+        window.SetAlphaBitPlanes(True)
         # Black and transparent: colours come out premultiplied, ready to be laid over another.
-        self.renderer.SetBackground(0, 0, 0)
-        self.renderer.SetBackgroundAlpha(0)
-        self.renderer.SetAutomaticLightCreation(False)
-        for light in canvas.renderer.lights:
-            self.renderer.AddLight(light.copy())
-        self.actors: dict[str, vtkActor] = {}
-        for name, actor in canvas.renderer.actors.items():
-            if not isinstance(actor, vtkActor) or actor.GetMapper() is None:
-                continue
-            if actor.GetVisibility() or name in shown:
-                self.actors[name] = self._copy(actor)
-                self.renderer.AddActor(self.actors[name])
-        self.camera = vtkCamera()
+        renderer.SetBackground(0, 0, 0)
+        renderer.SetBackgroundAlpha(0)
+        self._drawn = canvas.draw_into(self._plotter, scene)
+        self._lines = [(actor.prop, actor.prop.line_width) for actor in renderer.actors.values()]
+        self.camera = pv.Camera()
         self.camera.DeepCopy(canvas.camera)
         self._angle = self.camera.GetViewAngle()
         self._scale = self.camera.GetParallelScale()
-        self.renderer.SetActiveCamera(self.camera)
-        self._window: vtkRenderWindow | None = vtkRenderWindow()
-        self._window.SetOffScreenRendering(True)
-        self._window.SetMultiSamples(SAMPLES)
-        self._window.SetAlphaBitPlanes(True)
-        self._window.AddRenderer(self.renderer)
+        self._plotter.camera = self.camera
 
-    def _copy(self, actor: vtkActor) -> vtkActor:
-        copy, look = vtkActor(), vtkProperty()
-        copy.ShallowCopy(actor)
-        look.DeepCopy(actor.GetProperty())
-        self._lines.append((look, look.GetLineWidth()))
-        mapper = actor.GetMapper().NewInstance()
-        mapper.ShallowCopy(actor.GetMapper())
-        # Its points are rewritten in place when the warp changes.
-        mapper.SetInputDataObject(pv.wrap(actor.GetMapper().GetInputDataObject(0, 0)).copy())
-        copy.SetMapper(mapper)
-        copy.SetProperty(look)
-        copy.SetVisibility(True)
-        return copy
+    def show(self, scene: Scene) -> None:
+        """Render another scene from here on."""
+        self._drawn.show(scene)
 
     def scale_for(self, width: int, height: int) -> float:
         """Return how many pixels of a picture a logical pixel of the window takes.
@@ -131,8 +105,8 @@ class Offscreen:
         MemoryError
             When the graphics cannot render it.
         """
-        window = self._window
-        assert window is not None, "closed"
+        assert self._plotter is not None, "closed"
+        window, renderer = self._plotter.render_window, self._plotter.renderer
         scale = self.scale_for(width, height)
         for look, line_width in self._lines:
             look.SetLineWidth(max(1.0, line_width * scale))
@@ -144,7 +118,7 @@ class Offscreen:
         self.camera.SetViewAngle(2 * math.degrees(math.atan(tangent)))
         self.camera.SetParallelScale(self._scale * part)
         # All tiles are cut at one depth.
-        self.renderer.ResetCameraClippingRange()
+        renderer.ResetCameraClippingRange()
         corners = [(x, y) for y in range(0, height, down) for x in range(0, width, across)]
         for done, (left, top) in enumerate(corners, start=1):
             self.camera.SetWindowCenter(
@@ -155,10 +129,10 @@ class Offscreen:
 
     def close(self) -> None:
         """Let go of the graphics."""
-        if self._window is not None:
-            self._window.Finalize()
-            self._window.RemoveRenderer(self.renderer)
-            self._window = None
+        if self._plotter is not None:
+            self._plotter.close()
+            self._plotter.deep_clean()
+            self._plotter = None
 
 
 def _share(length: int, most: int) -> int:

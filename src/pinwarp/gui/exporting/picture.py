@@ -13,7 +13,10 @@ from qtpy.QtWidgets import QWidget
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.exporting.offscreen import Offscreen, Tile
+from pinwarp.gui.painted.legend import PaintedLegend
 from pinwarp.gui.painted.marker_layer import MarkerLayer
+from pinwarp.gui.scene.drawables import Arrows, Caption, Legend, Markers, ScaleBar
+from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.style import theme
 from pinwarp.gui.tasks.stepped_job import Steps
 from pinwarp.gui.views.canvas import Canvas
@@ -84,7 +87,7 @@ def picture_steps(order: PictureOrder, views: Mapping[Side, Canvas]) -> Steps:
     places = _places(order)
     for side, place in places.items():
         _paint_landmarks(image, order, views[side], place)
-    copies = {side: Offscreen(views[side]) for side in order.sides}
+    copies = {side: Offscreen(views[side], views[side].scene) for side in order.sides}
     yield 0.0, "rendering"
     try:
         for number, (side, place) in enumerate(places.items()):
@@ -143,32 +146,37 @@ def _places(order: PictureOrder) -> dict[Side, QRect]:
 
 def _paint_landmarks(image: QImage, order: PictureOrder, view: Canvas, place: QRect) -> None:
     """Paint a view's landmarks, title and scale bar as they are now."""
-    shown = view.layer
     width, height = max(1, view.width()), max(1, view.height())
     scale = min(place.width() / width, place.height() / height)
-    layer = MarkerLayer(view, view.side.value.capitalize())
+    layer = MarkerLayer(view, view)
     layer.resize(round(place.width() / scale), round(place.height() / scale))
     layer.offset = ((layer.width() - width) / 2, (layer.height() - height) / 2)
     layer.pixels_per_pixel = scale / layer.devicePixelRatioF()
-    layer.framed = order.framed
-    layer.caption, layer.unit, layer.radius = shown.caption, shown.unit, shown.radius
-    if order.landmarks:
-        layer.arrows = shown.arrows
-        # What is selected just now is of no interest later; names behind the bone cover others.
-        layer.set_markers(
-            tuple(
-                replace(marker, selected=False, labelled=order.names and not hidden)
-                for marker, hidden in zip(shown.markers, shown.hidden().tolist(), strict=True)
-            )
-        )
+    scene = _painted(order, view)
+    # Colours without it say little.
+    legend = PaintedLegend(layer)
+    legend.show_content(scene.of(Legend))
+    layer.give_way_to(legend)
+    layer.show_scene(scene)
     painter = QPainter(image)
     painter.translate(place.topLeft())
     painter.scale(scale, scale)
-    layer.render(painter, QPoint(), QRegion(), QWidget.RenderFlag(0))
-    legend = view.map_legend
-    if order.framed and legend.isVisible():
-        # As far from the right edge as in the window: colours without it say little.
-        painter.translate(layer.width() - (width - legend.x()), legend.y())
-        legend.render(painter, QPoint(), QRegion(), QWidget.RenderFlag(0))
+    layer.render(painter, QPoint(), QRegion(), QWidget.RenderFlag.DrawChildren)
     painter.end()
     layer.deleteLater()
+
+
+def _painted(order: PictureOrder, view: Canvas) -> Scene:
+    """Return what is painted into a picture, of all that a view shows."""
+    framing = (Caption, ScaleBar, Legend) if order.framed else ()
+    placed = (Markers, Arrows) if order.landmarks else ()
+    scene = view.scene.only(*framing, *placed)
+    signs = scene.of(Markers)
+    if signs is None:
+        return scene
+    # What is selected just now is of no interest later; names behind the bone cover others.
+    markers = tuple(
+        replace(marker, selected=False, labelled=order.names and not hidden)
+        for marker, hidden in zip(signs.markers, view.layer.hidden().tolist(), strict=True)
+    )
+    return scene.with_(replace(signs, markers=markers))

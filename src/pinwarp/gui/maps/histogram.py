@@ -8,8 +8,8 @@ from qtpy.QtGui import QColor, QPainter, QPaintEvent, QPalette, QPen, QPolygonF
 from qtpy.QtWidgets import QSizePolicy, QWidget
 
 from pinwarp.core.maps import Histogram, SurfaceMap
-from pinwarp.gui.painted.colour_scale import ColourScale
 from pinwarp.gui.style import theme
+from pinwarp.gui.style.colour_scale import ColourScale
 
 _MARGIN = 8
 

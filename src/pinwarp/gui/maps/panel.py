@@ -25,8 +25,8 @@ from qtpy.QtWidgets import (
 from pinwarp.core.maps import MapKind, Range, SurfaceMap, must_be_relative
 from pinwarp.gui.maps.histogram import HistogramView
 from pinwarp.gui.maps.words import MEANINGS, TITLES, figure, note_of
-from pinwarp.gui.painted.colour_scale import ColourScale
 from pinwarp.gui.style import theme
+from pinwarp.gui.style.colour_scale import ColourScale
 from pinwarp.session.editor import ViewState
 from pinwarp.session.judging.survey import Survey
 

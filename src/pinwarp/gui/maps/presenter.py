@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import weakref
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -18,17 +18,25 @@ from scipy.spatial import KDTree
 from pinwarp.core.landmarks import Side
 from pinwarp.core.maps import MapKind, Range, Suggestion
 from pinwarp.core.mesh import Mesh
-from pinwarp.gui.drawn.folds import FoldedSurface
 from pinwarp.gui.findings.fold_note import FoldNote
 from pinwarp.gui.maps.panel import MapPanel
 from pinwarp.gui.maps.words import TITLES, note_of
-from pinwarp.gui.painted.colour_scale import ColourScale
-from pinwarp.gui.painted.legend import LegendContent
+from pinwarp.gui.scene.drawables import (
+    Colouring,
+    Drawable,
+    FoldedSurface,
+    Legend,
+    MapLevels,
+    Star,
+)
+from pinwarp.gui.style.colour_scale import ColourScale
 from pinwarp.gui.tasks.jobs import LatestWins
+from pinwarp.gui.views.scenes import Scenes
 from pinwarp.gui.views.viewport import Viewport
 from pinwarp.gui.warp.warps import Presenter
 from pinwarp.session.editor import Editor, ViewState
 from pinwarp.session.judging.survey import Survey, Surveyor
+from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.session import Session
 from pinwarp.session.warp.solver import WarpResult
 
@@ -46,12 +54,12 @@ class _Request:
 
 
 @dataclass(frozen=True, eq=False)
-class _Drawable:
+class _Surveyed:
     """A survey made ready for the screen in the worker."""
 
     request: _Request
     survey: Survey
-    levels: tuple[NDArray[np.float32] | None, NDArray[np.float32] | None]
+    levels: MapLevels | None
     folded: FoldedSurface | None
 
 
@@ -67,8 +75,10 @@ class MapPresenter(QObject):
         The truth.
     presenter
         Where the warps come from, and who places landmarks.
-    viewports
-        One per side.
+    scenes
+        Where it is shown.
+    view
+        The destination's: its legend is clicked.
     panel
         The figures.
     actions
@@ -85,7 +95,8 @@ class MapPresenter(QObject):
         self,
         editor: Editor,
         presenter: Presenter,
-        viewports: Mapping[Side, Viewport],
+        scenes: Scenes,
+        view: Viewport,
         panel: MapPanel,
         actions: Mapping[str, QAction],
         parent: QObject,
@@ -93,7 +104,7 @@ class MapPresenter(QObject):
         super().__init__(parent)
         self._editor = editor
         self._presenter = presenter
-        self._viewports = viewports
+        self._scenes = scenes
         self._panel = panel
         self._actions = actions
         self._surveyor = Surveyor()
@@ -102,14 +113,13 @@ class MapPresenter(QObject):
         self._surveys.computed.connect(self._on_survey)
         self._surveys.failed.connect(self._on_failure)
         self._resting: WarpResult | None = None
-        self._drawable: _Drawable | None = None
+        self._surveyed: _Surveyed | None = None
         self._asked: _Request | None = None
-        self._drawn: tuple[_Drawable | None, ColourScale | None] = (None, None)
         self.fold_note = FoldNote(editor, actions["focus"])
-        self._connect()
+        self._connect(view)
         self._on_view()
 
-    def _connect(self) -> None:
+    def _connect(self, view: Viewport) -> None:
         editor, panel = self._editor, self._panel
         choices = QActionGroup(self)
         for kind, key in MAP_ACTIONS.items():
@@ -119,7 +129,7 @@ class MapPresenter(QObject):
         self._actions["place_suggested"].triggered.connect(
             lambda _checked=False: self.place_suggested()
         )
-        self._viewports[Side.DESTINATION].map_legend.clicked.connect(self._on_legend)
+        view.map_legend.clicked.connect(self._on_legend)
         panel.map_requested.connect(self.show_map)
         panel.range_requested.connect(self._fix_range)
         panel.relative_requested.connect(lambda on: editor.look(map_relative=on))
@@ -142,7 +152,7 @@ class MapPresenter(QObject):
     @property
     def survey(self) -> Survey | None:
         """What was found last."""
-        return self._drawable.survey if self._drawable is not None else None
+        return self._surveyed.survey if self._surveyed is not None else None
 
     @property
     def opacity_key(self) -> str:
@@ -207,10 +217,10 @@ class MapPresenter(QObject):
 
     def _taken_by(self) -> str | None:
         """Return the landmark that stands where the next one helps most."""
-        suggestion, surface = self._suggestion(), self._viewports[Side.SOURCE].surface
-        if suggestion is None or surface is None:
+        suggestion, mesh = self._suggestion(), self._editor.session.mesh(Side.SOURCE)
+        if suggestion is None or mesh is None:
             return None
-        reach = THERE * surface.diagonal
+        reach = THERE * mesh.diagonal
         for landmark in self._editor.session.landmarks:
             place = landmark.source
             if place is not None and math.dist(place, suggestion.position) < reach:
@@ -223,8 +233,7 @@ class MapPresenter(QObject):
         refined_later = result.factor is not None and not result.factor.has_modes
         self._resting = result if at_rest and not refined_later else None
         if self._resting is None:
-            # The overlay has moved on from under its colours.
-            self._draw(None)
+            self._scenes.renew()
         else:
             self._show_or_ask()
 
@@ -251,7 +260,7 @@ class MapPresenter(QObject):
         self._asked = request
         self._surveys.request(request)
 
-    def _survey(self, request: _Request) -> _Drawable:
+    def _survey(self, request: _Request) -> _Surveyed:
         """Survey a warp and make ready what is drawn of it; runs in the worker."""
         result = request.result
         survey = self._surveyor.survey(
@@ -265,22 +274,23 @@ class MapPresenter(QObject):
                 _, rows = KDTree(mesh.vertices).query(stand_in.vertices)
                 self._nearest[stand_in] = np.asarray(rows)
             coarse = levels[self._nearest[stand_in]]
-        return _Drawable(request, survey, (levels, coarse), _folded_surface(survey))
+        colours = MapLevels(levels, coarse) if levels is not None else None
+        return _Surveyed(request, survey, colours, _folded_surface(survey))
 
-    def _on_survey(self, drawable: _Drawable) -> None:
+    def _on_survey(self, surveyed: _Surveyed) -> None:
         current = self._request()
-        if current is None or drawable.request != current:
+        if current is None or surveyed.request != current:
             return
         before = self.survey.findings if self.survey is not None else ()
         kind_before = self.survey.kind if self.survey is not None else None
-        self._drawable = drawable
+        self._surveyed = surveyed
         self._show()
-        if drawable.survey.missing and drawable.survey.kind is not kind_before:
+        if surveyed.survey.missing and surveyed.survey.kind is not kind_before:
             # The panel says so all the time; who chose from the menu may not see it.
-            self.refused.emit(drawable.survey.missing)
-        self.map_changed.emit(drawable.survey)
-        if drawable.survey.findings != before:
-            self.folds_changed.emit(drawable.survey.findings)
+            self.refused.emit(surveyed.survey.missing)
+        self.map_changed.emit(surveyed.survey)
+        if surveyed.survey.findings != before:
+            self.folds_changed.emit(surveyed.survey.findings)
 
     def _on_failure(self, error: Exception) -> None:
         raise error
@@ -296,39 +306,41 @@ class MapPresenter(QObject):
 
     def _show(self) -> None:
         """Show the last survey as the view state wants it."""
-        session, drawable, scale = self._editor.session, self._drawable, self._scale()
+        session, scale = self._editor.session, self._scale()
         self._panel.show_survey(
             self.survey, self._editor.view, session.unit, scale, self._taken_by()
         )
         self.fold_note.show_survey(self.survey)
-        fresh = drawable is not None and drawable.request.result is self._resting
-        self._draw(drawable if fresh else None)
+        self._scenes.renew()
 
-    def _draw(self, drawable: _Drawable | None) -> None:
-        """Draw a survey over the destination, or nothing of the kind while things move."""
-        scale, there = self._scale(), self._viewports[Side.DESTINATION]
-        # Only what changed: a hovered landmark must not upload a million colours anew.
-        if (drawable, scale) != self._drawn:
-            if drawable is None or scale is None:
-                there.show_map((None, None), None)
-            else:
-                there.show_map(drawable.levels, scale.table())
-            if drawable is None or self._drawn[0] is not drawable:
-                there.show_folds(drawable.folded if drawable is not None else None)
-            self._drawn = (drawable, scale)
-        there.show_legend(self._legend(scale) if self._editor.view.overlay else None)
-        marked = self._suggestion() if self._taken_by() is None else None
-        self._viewports[Side.SOURCE].layer.show_suggestion(marked)
+    def drawables(self, side: Side) -> Iterator[Drawable]:
+        """Return map, folds and legend of the warp that is shown, and where it guesses."""
+        if side is Side.SOURCE:
+            suggestion = self._suggestion() if self._taken_by() is None else None
+            if suggestion is not None:
+                yield Star(suggestion, unit_on(self._editor.session, side))
+            return
+        surveyed, scale = self._surveyed, self._scale()
+        # While things move the overlay has moved on from under its colours.
+        if surveyed is not None and surveyed.request.result is self._resting:
+            if surveyed.levels is not None and scale is not None:
+                yield Colouring(surveyed.levels, scale.kind, scale.range)
+            if surveyed.folded is not None:
+                yield surveyed.folded
+        legend = self._legend(scale)
+        if legend is not None and self._editor.view.overlay:
+            yield legend
 
-    def _legend(self, scale: ColourScale | None) -> LegendContent | None:
+    def _legend(self, scale: ColourScale | None) -> Legend | None:
         survey, view = self.survey, self._editor.view
         if scale is None or survey is None or survey.map is None:
             return None
         (low, high), found = scale.range, survey.map
-        return LegendContent(
+        return Legend(
             title=TITLES[found.kind],
             note=note_of(found, self._editor.session.unit),
-            scale=scale,
+            kind=scale.kind,
+            range=scale.range,
             # What differs in the last digits only is not beyond the end.
             clipped=(found.lowest < low - 1e-6 * (high - low), found.highest > high * (1 + 1e-6)),
             fixed=view.map_range is not None,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from qtpy.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from qtpy.QtGui import (
     QColor,
@@ -18,8 +16,9 @@ from qtpy.QtGui import (
 )
 from qtpy.QtWidgets import QWidget
 
-from pinwarp.gui.painted.colour_scale import ColourScale
+from pinwarp.gui.scene.drawables import Legend
 from pinwarp.gui.style import theme
+from pinwarp.gui.style.colour_scale import ColourScale
 
 # In logical pixels: the bar, the room around everything, and between bar and numbers.
 BAR_WIDTH = 14
@@ -32,44 +31,19 @@ MARGIN = 10
 TITLE_WIDTH = 108
 
 
-@dataclass(frozen=True)
-class LegendContent:
-    """What a legend shows.
-
-    Parameters
-    ----------
-    title
-        In words.
-    note
-        Below it: the unit, or what the ratios are relative to.
-    scale
-        The colours.
-    clipped
-        Whether values lie below and above what is shown.
-    fixed
-        Whether the user fixed the range.
-    """
-
-    title: str
-    note: str
-    scale: ColourScale
-    clipped: tuple[bool, bool] = (False, False)
-    fixed: bool = False
-
-
-class Legend(QWidget):
+class PaintedLegend(QWidget):
     """Stands in the upper right corner of its viewport; a click asks to fix its range, or not."""
 
     clicked = Signal()
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
-        self.content: LegendContent | None = None
+        self.content: Legend | None = None
         self.setAttribute(Qt.WidgetAttribute.WA_NoSystemBackground)
         self.setCursor(Qt.CursorShape.PointingHandCursor)
         self.hide()
 
-    def show_content(self, content: LegendContent | None) -> None:
+    def show_content(self, content: Legend | None) -> None:
         """Show the legend of a map, or none."""
         if content == self.content:
             return
@@ -93,6 +67,11 @@ class Legend(QWidget):
         self.setGeometry(view.right() - size.width() - MARGIN, top, size.width(), size.height())
         enough = self._bar_height(room) >= LEAST_BAR and view.width() > 2.5 * size.width()
         self.setVisible(self.content is not None and enough)
+
+    @property
+    def has_room(self) -> bool:
+        """Whether there is a legend, and room enough for it."""
+        return self.isVisibleTo(self.parentWidget())
 
     def _title_font(self) -> QFont:
         font = QFont(self.font())
@@ -149,7 +128,7 @@ class Legend(QWidget):
             _paint_lock(painter, QPointF(self.width() - PADDING - 6, bar.top() + 2))
         painter.end()
 
-    def _paint_title(self, painter: QPainter, content: LegendContent) -> float:
+    def _paint_title(self, painter: QPainter, content: Legend) -> float:
         top = float(PADDING)
         for text, font, colour in (
             (content.title, self._title_font(), theme.INK),
@@ -164,11 +143,12 @@ class Legend(QWidget):
             top += height
         return top + GAP / 2
 
-    def _paint_bar(self, painter: QPainter, content: LegendContent, bar: QRectF) -> None:
-        low, high = content.scale.ends
+    def _paint_bar(self, painter: QPainter, content: Legend, bar: QRectF) -> None:
+        scale = ColourScale(content.kind, content.range)
+        low, high = scale.ends
         rows = 256
         levels = [high - (high - low) * (row + 0.5) / rows for row in range(rows)]
-        colours = content.scale.colours(levels)
+        colours = scale.colours(levels)
         # Kept while it is painted: the image only points at it.
         pixels = colours.tobytes()
         image = QImage(pixels, 1, rows, 3, QImage.Format.Format_RGB888)
@@ -193,11 +173,11 @@ class Legend(QWidget):
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.drawPolygon(QPolygonF(outline))
 
-    def _paint_values(self, painter: QPainter, content: LegendContent, bar: QRectF) -> None:
+    def _paint_values(self, painter: QPainter, content: Legend, bar: QRectF) -> None:
         painter.setFont(self.font())
         painter.setPen(QPen(QColor(theme.INK), 1))
         line = painter.fontMetrics().height()
-        for tick in content.scale.ticks():
+        for tick in ColourScale(content.kind, content.range).ticks():
             y = bar.bottom() - tick.share * bar.height()
             painter.drawLine(QPointF(bar.right(), y), QPointF(bar.right() + 4, y))
             box = QRectF(bar.right() + GAP, y - line / 2, self.width(), line)

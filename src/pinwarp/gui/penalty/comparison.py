@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from qtpy.QtCore import QObject, Qt
 from qtpy.QtGui import QAction, QKeySequence, QShortcut
 from qtpy.QtWidgets import QWidget
 
-from pinwarp.gui.painted.marker_layer import MarkerLayer
+from pinwarp.core.landmarks import Side
 from pinwarp.gui.penalty.passing_preview import PassingPreview
+from pinwarp.gui.scene.drawables import Badge, Drawable
 from pinwarp.gui.style.lengths import format_length
+from pinwarp.gui.views.scenes import Scenes
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.session import Session
@@ -61,7 +63,7 @@ class PenaltyComparison(QObject):
         The truth.
     action
         Takes the previous penalty for good.
-    layer
+    scenes
         Where it is said what is shown.
     say
         Shows a message in the status bar.
@@ -73,14 +75,15 @@ class PenaltyComparison(QObject):
         self,
         editor: Editor,
         action: QAction,
-        layer: MarkerLayer,
+        scenes: Scenes,
         say: Callable[[str], None],
         window: QWidget,
     ) -> None:
         super().__init__(window)
         self._editor = editor
         self._action = action
-        self._layer = layer
+        self._scenes = scenes
+        self._badge = ""
         self._say = say
         self._trail = PenaltyTrail(editor)
         self._preview = PassingPreview(editor, self, Qt.Key.Key_B)
@@ -108,10 +111,19 @@ class PenaltyComparison(QObject):
         elif not self._editor.is_previewing:
             self._preview.show(edits.set_penalty(self._editor.committed, previous))
             length = format_length(previous, self._editor.committed.unit, 3)
-            self._layer.show_badge(f"B: previous penalty {length} (hold)")
+            self._show_badge(f"B: previous penalty {length} (hold)")
 
     def _on_ended(self) -> None:
-        self._layer.show_badge("")
+        self._show_badge("")
+
+    def _show_badge(self, words: str) -> None:
+        self._badge = words
+        self._scenes.renew()
+
+    def drawables(self, side: Side) -> Iterator[Drawable]:
+        """Return what says that this is not the present penalty."""
+        if self._badge and side is Side.DESTINATION:
+            yield Badge(self._badge)
 
     def _swap(self) -> None:
         if self._trail.previous is not None:

@@ -12,6 +12,7 @@ from pinwarp.gui.penalty.figures import tidy_residual
 from pinwarp.gui.penalty.passing_preview import PassingPreview
 from pinwarp.gui.penalty.snapshot_strip import PICTURE, Snapshot, SnapshotStrip
 from pinwarp.gui.views.canvas import Canvas
+from pinwarp.gui.views.scenes import Scenes
 from pinwarp.gui.warp.quality import QualityPresenter
 from pinwarp.gui.warp.warps import Presenter
 from pinwarp.session import edits
@@ -36,7 +37,7 @@ class Snapshots(QObject):
     ----------
     editor, presenter, quality
         Where the warps and their figures come from.
-    canvas
+    scenes, canvas
         What is pictured.
     strip
         Where the snapshots are shown.
@@ -53,6 +54,7 @@ class Snapshots(QObject):
         editor: Editor,
         presenter: Presenter,
         quality: QualityPresenter,
+        scenes: Scenes,
         canvas: Canvas,
         strip: SnapshotStrip,
         actions: Mapping[str, QAction],
@@ -63,6 +65,7 @@ class Snapshots(QObject):
         self._editor = editor
         self._presenter = presenter
         self._quality = quality
+        self._scenes = scenes
         self._canvas = canvas
         self._strip = strip
         self._actions = actions
@@ -148,6 +151,8 @@ class Snapshots(QObject):
         self._strip.show_last()
 
     def _snapshot(self, result: WarpResult) -> Snapshot:
+        # The warp has just arrived, and is not seen yet.
+        self._scenes.show_now()
         quality, flexibility = self._quality.quality, result.flexibility
         left_out = None
         if quality is not None and quality.curve is not None and flexibility is not None:

@@ -8,12 +8,12 @@ from qtpy.QtCore import QObject
 from qtpy.QtGui import QAction
 from qtpy.QtWidgets import QWidget
 
-from pinwarp.core.landmarks import Side
 from pinwarp.gui.penalty.comparison import PenaltyComparison
 from pinwarp.gui.penalty.panel import PenaltyPanel
 from pinwarp.gui.penalty.snapshot_strip import SnapshotStrip
 from pinwarp.gui.penalty.snapshots import Snapshots
-from pinwarp.gui.views.viewport import Viewport
+from pinwarp.gui.views.canvas import Canvas
+from pinwarp.gui.views.scenes import Scenes
 from pinwarp.gui.warp.quality import QualityPresenter
 from pinwarp.gui.warp.warps import Presenter
 from pinwarp.session.editor import Editor, ViewState
@@ -27,8 +27,8 @@ class PenaltyTuning(QObject):
     ----------
     editor, presenter, quality
         The truth, its warps and their figures.
-    viewports
-        One per side.
+    scenes, canvas
+        Where it is shown and pictured.
     panel, strip
         What it fills.
     actions
@@ -44,7 +44,8 @@ class PenaltyTuning(QObject):
         editor: Editor,
         presenter: Presenter,
         quality: QualityPresenter,
-        viewports: Mapping[Side, Viewport],
+        scenes: Scenes,
+        canvas: Canvas,
         panel: PenaltyPanel,
         strip: SnapshotStrip,
         actions: Mapping[str, QAction],
@@ -56,11 +57,10 @@ class PenaltyTuning(QObject):
         self._quality = quality
         self._panel = panel
         self._actions = actions
-        canvas = viewports[Side.DESTINATION]
-        self.comparison = PenaltyComparison(
-            editor, actions["swap_penalty"], canvas.layer, say, window
+        self.comparison = PenaltyComparison(editor, actions["swap_penalty"], scenes, say, window)
+        self.snapshots = Snapshots(
+            editor, presenter, quality, scenes, canvas, strip, actions, say, self
         )
-        self.snapshots = Snapshots(editor, presenter, quality, canvas, strip, actions, say, self)
         actions["take_suggested"].triggered.connect(panel.take_suggested)
         actions["show_curve"].toggled.connect(self._on_curve)
         quality.quality_changed.connect(self._on_quality)

@@ -69,7 +69,7 @@ class Guidance:
             return
         target = self._presenter.requests.target
         targets = [f"on the {side.value} places {target(side) or 'a new one'}" for side in Side]
-        ghost = "  Space accepts the ghost." if any(self._presenter.ghosts.values()) else ""
+        ghost = "  Space accepts the ghost." if any(map(self._presenter.ghost, Side)) else ""
         self._hint.setText(f"A click {targets[0]}, {targets[1]}.{ghost}")
 
     def _hover_words(self, name: str) -> str:

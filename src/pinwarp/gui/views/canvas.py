@@ -1,9 +1,9 @@
-"""One side's picture: meshes, overlay, landmarks and camera."""
+"""One side's picture: a scene, and a camera before it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Hashable
+from typing import TypeVar
 
 import numpy as np
 import pyvista as pv
@@ -11,68 +11,51 @@ from numpy.typing import NDArray
 from qtpy.QtCore import QPointF, Signal
 from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QWidget
-from vtkmodules.vtkCommonCore import vtkLookupTable
 
 from pinwarp.core.landmarks import Side
-from pinwarp.gui.drawn.depth import WHOLE_DEPTH
-from pinwarp.gui.drawn.folds import DrawnFolds, FoldedSurface
-from pinwarp.gui.drawn.lines import DrawnLines
-from pinwarp.gui.drawn.mesh import DrawnMesh, OverlayWarp
+from pinwarp.gui.drawn.scene import DrawnScene
 from pinwarp.gui.drawn.section import Section
-from pinwarp.gui.drawn.surface import Surface, shaded
-from pinwarp.gui.painted.legend import Legend, LegendContent
+from pinwarp.gui.drawn.surface import Surface
+from pinwarp.gui.drawn.surfaces import Surfaces
+from pinwarp.gui.painted.legend import PaintedLegend
 from pinwarp.gui.painted.marker_layer import MarkerLayer
 from pinwarp.gui.scene.camera_pose import Matrix, Pose, best_frame, fitted
+from pinwarp.gui.scene.drawables import Drawable, GridLines, Legend, Motion, Overlay
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.style import theme
 from pinwarp.gui.views.fast_view import FastView
 
-_COLOURS = {Side.SOURCE: theme.SOURCE_COLOUR, Side.DESTINATION: theme.DESTINATION_COLOUR}
-_BONE = {"ambient": 0.2, "diffuse": 0.92, "specular": 0.16, "specular_power": 18}
-_OVERLAY = {"specular": 0.2, "specular_power": 20}
-# Key, fill and rim light: place relative to the camera, and strength.
-_LIGHTS = (((-0.5, 0.7, 1.0), 0.85), ((0.9, 0.1, 0.7), 0.42), ((0.0, 0.8, -1.0), 0.25))
+Kind = TypeVar("Kind", bound=Drawable)
+
 # A frame slower than this is replaced by a stand-in's while something moves.
 SLOW_FRAME = 0.030
-# Where an overlay that shows a map and the bone stand in the picture's depth: else the bone would
-# hide the half of the map that lies inside it.
-MAP_DEPTH, DEPTH_BEHIND_MAP = (0.0, 0.5), (0.5, 1.0)
 
 
 class Canvas(FastView):
-    """Draws a scene and the overlay; knows where things are on the screen."""
+    """Shows a scene; knows where things are on the screen.
+
+    Parameters
+    ----------
+    side
+        Whose scenes these are.
+    surfaces
+        Where meshes become surfaces.
+    """
 
     orbiting_changed = Signal(bool)
 
-    def __init__(self, side: Side, parent: QWidget | None = None) -> None:
+    def __init__(self, side: Side, surfaces: Surfaces, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.side = side
-        self.layer = MarkerLayer(self, side.value.capitalize())
-        self.map_legend = Legend(self)
-        self.surface: Surface | None = None
         self.is_placing_camera = False
-        self._scene: Scene | None = None
-        self._section: Section | None = None
-        bone = {"color": _COLOURS[side]} | _BONE
-        warped = {"color": theme.OVERLAY_COLOUR} | _OVERLAY
-        self._full = DrawnMesh(self, "surface", **bone)
-        self._coarse = DrawnMesh(self, "surface stand-in", **bone)
-        self._overlay = DrawnMesh(self, "overlay", **warped)
-        self._coarse_overlay = DrawnMesh(self, "overlay stand-in", **warped)
-        self._folds = DrawnFolds(self)
-        self._grid = DrawnLines(self, "grid", color=theme.INK, opacity=0.4)
+        self._stage = DrawnScene(self, side, surfaces)
+        self.layer = MarkerLayer(self, self)
+        self.map_legend = PaintedLegend(self)
+        self.layer.give_way_to(self.map_legend)
         self._full_frame_seconds = 0.0
-        self._warping = self._orbiting = False
+        self._orbiting = False
         self.set_background(theme.BACKGROUND_BOTTOM, top=theme.BACKGROUND_TOP)
-        self._set_lights()
         self.setMinimumSize(160, 160)
-
-    def _set_lights(self) -> None:
-        """Key, fill and rim light that move with the camera."""
-        self.remove_all_lights()
-        for place, strength in _LIGHTS:
-            light = pv.Light(position=place, light_type="camera light", intensity=strength)
-            self.add_light(light)
 
     def update(self) -> None:
         """Schedule a paint of the bones, and where it is needed of the sheet above them."""
@@ -82,126 +65,66 @@ class Canvas(FastView):
         if layer is not None and layer.painted_for != self.view_key():
             layer.update()
 
-    def show_surface(self, surface: Surface | None) -> None:
-        """Show another mesh on this side and look at it, or none."""
-        if surface is self.surface:
-            return
-        self.surface = surface
-        self._full.remove()
-        self._coarse.remove()
-        if surface is not None:
-            self._full.show(surface.polydata)
-            if surface.stand_in is not None:
-                self._coarse.show(shaded(surface.stand_in.vertices, surface.stand_in.faces))
-            self.look_at_all()
-        if self._section is not None:
-            # The other bone is cut from the same side, in its own depth.
-            self._cut(self._section.direction, self._section.share)
-        self._full_frame_seconds = 0.0
-        self._choose_detail()
+    # The scene
 
     def show_scene(self, scene: Scene) -> None:
-        """Show another state of the session; the mesh is set by :meth:`show_surface`."""
-        before, self._scene = self._scene, scene
-        if scene == before:
-            return
+        """Show another scene: drawn and painted is only what is new in it."""
+        surface, moved = self.surface, scene.of(Motion) != self.drawn(Motion)
+        changed = self._stage.show(scene)
         # The sheet repaints by itself: no bone is rendered anew for a label.
-        self.layer.hint, self.layer.unit = scene.hint, scene.unit
-        self.layer.radius = scene.marker_radius
-        self.layer.set_markers(scene.markers)
-        self.layer.ghost, self.layer.arrows = scene.ghost, scene.arrows
-        if before is None or scene.wireframe != before.wireframe:
-            for drawn in (self._full, self._coarse):
-                drawn.set_wireframe(scene.wireframe)
-            self.update()
-        if scene.section != (before.section if before is not None else None):
-            self._show_section(scene.section)
-        if before is None or scene.overlay != before.overlay:
-            self._choose_detail()
-
-    def show_overlay(self, warps: Sequence[OverlayWarp | None]) -> None:
-        """Show the warped source over this side's mesh: in full, as a stand-in, or both."""
-        for drawn, warp in zip((self._overlay, self._coarse_overlay), warps, strict=True):
-            if warp is None:
-                continue
-            # One layer of a translucent bone needs no depth peeling.
-            culling = "front" if warp.inside_out else "back"
-            drawn.write(warp.mesh, warp.vertices, warp.normals, culling=culling)
-        if not self.camera.is_set:
-            self.look_at_all()
-        else:
-            self.renderer.ResetCameraClippingRange()
-        self._choose_detail()
-
-    def hide_overlay(self) -> None:
-        """Show no warped source."""
-        self._overlay.remove()
-        self._coarse_overlay.remove()
-        self._folds.show(None)
-        self._choose_detail()
-
-    def show_map(
-        self, levels: Sequence[NDArray[np.float32] | None], table: vtkLookupTable | None
-    ) -> None:
-        """Colour the overlay, in full and the stand-in; plain where there are no levels."""
-        for drawn, colours in zip((self._overlay, self._coarse_overlay), levels, strict=True):
-            drawn.colour(colours, table)
-        self._choose_detail()
-
-    def show_legend(self, content: LegendContent | None) -> None:
-        """Show the legend of a map, or none."""
-        if content != self.map_legend.content:
-            self.map_legend.show_content(content)
+        self.layer.show_scene(scene)
+        if scene.of(Legend) != self.map_legend.content:
+            self.map_legend.show_content(scene.of(Legend))
             # Labels give way to it.
             self.layer.update()
-
-    def show_folds(self, folded: FoldedSurface | None) -> None:
-        """Show where the warp turns the surface inside out."""
-        self._folds.show(folded)
-        self._folds.set_clip(self._section.plane if self._section is not None else None)
-        self._choose_detail()
-
-    def show_grid(self, lines: NDArray | None) -> None:
-        """Show (lines, samples, 3) positions as lines, or none; the camera stays where it is."""
-        if lines is None:
-            self._grid.remove()
-        else:
-            self._grid.write(lines)
-        self.renderer.ResetCameraClippingRange()
-        self._choose_detail()
+        if self.surface is not surface:
+            self._full_frame_seconds = 0.0
+            self.look_at_all()
+        elif changed & {Overlay, GridLines}:
+            if not self.camera.is_set and Overlay in changed:
+                self.look_at_all()
+            else:
+                self.renderer.ResetCameraClippingRange()
+        if changed or moved:
+            self._choose_detail()
 
     @property
-    def grid_lines(self) -> NDArray | None:
-        """The (lines, samples, 3) positions of the grid as drawn, None where there is none."""
-        return self._grid.lines
+    def scene(self) -> Scene:
+        """What is shown."""
+        return self._stage.scene
 
-    def _show_section(self, share: float | None) -> None:
-        """Move the cross-section; when it is switched on it faces the camera."""
-        if share is not None and self._section is not None:
-            self._section.move(share)
-            self.update()
-        else:
-            self._cut(None if share is None else -np.array(self.camera.direction), share or 0.0)
+    def drawn(self, kind: type[Kind]) -> Kind | None:
+        """Return what is shown of a kind, None where nothing is."""
+        return self.scene.of(kind)
 
-    def _cut(self, direction: NDArray | None, share: float) -> None:
-        self._section = None
-        if direction is not None:
-            points = self.bone.points if self.bone is not None else np.zeros((1, 3))
-            self._section = Section(direction, points)
-            self._section.move(share)
-        plane = self._section.plane if self._section is not None else None
-        for drawn in (self._full, self._coarse, self._overlay, self._coarse_overlay):
-            drawn.set_clip(plane)
-        self._folds.set_clip(plane)
-        self.update()
+    @property
+    def drawn_kinds(self) -> frozenset[type[Drawable]]:
+        """All kinds that somebody here draws."""
+        return self._stage.kinds | self.layer.kinds | {Legend, Motion}
+
+    @property
+    def surface(self) -> Surface | None:
+        """The bone of this side."""
+        return self._stage.surface
+
+    @property
+    def section(self) -> Section | None:
+        """The cut through the bones."""
+        return self._stage.section
+
+    def draw_into(self, plotter: pv.Plotter, scene: Scene) -> DrawnScene:
+        """Draw a scene in another plotter as it would be drawn here, cut from the same side."""
+        return self._stage.draw_into(plotter, scene)
 
     @property
     def overlay_points(self) -> NDArray | None:
         """The vertices of the overlay as drawn, None where there is none."""
-        drawn = self._coarse_overlay if self.is_coarse else self._overlay
-        if drawn.polydata is None:
-            drawn = self._overlay
-        return None if drawn.polydata is None else np.array(drawn.polydata.points)
+        return self._stage.overlay_points
+
+    @property
+    def grid_lines(self) -> NDArray | None:
+        """The (lines, samples, 3) positions of the grid as drawn, None where there is none."""
+        return self._stage.grid_lines
 
     # Detail: a stand-in while something moves and a frame in full would be slow
 
@@ -215,12 +138,6 @@ class Canvas(FastView):
         """Whether the stand-in is drawn now."""
         return self._is_moving and self.is_slow
 
-    def set_warping(self, warping: bool) -> None:
-        """Say whether the overlay is being moved by the hand."""
-        if warping != self._warping:
-            self._warping = warping
-            self._choose_detail()
-
     def set_orbiting(self, orbiting: bool) -> None:
         """Say whether the camera is being moved by the hand."""
         if orbiting != self._orbiting:
@@ -230,37 +147,18 @@ class Canvas(FastView):
 
     @property
     def _is_moving(self) -> bool:
-        return self._warping or self._orbiting
+        return self._orbiting or self.drawn(Motion) is not None
 
     def _choose_detail(self) -> None:
-        coarse, scene = self.is_coarse, self._scene
         # Smoothed edges cost half a frame in software: they can wait until things rest.
         self.renderer.SetUseFXAA(not self._is_moving)
-        overlay_visible = scene is not None and scene.overlay_visible
-        for full, stand_in, visible in (
-            (self._full, self._coarse, True),
-            (self._overlay, self._coarse_overlay, overlay_visible),
-        ):
-            replaced = coarse and stand_in.actor is not None
-            full.set_visible(visible and not replaced)
-            stand_in.set_visible(visible and replaced)
-        for drawn in (self._overlay, self._coarse_overlay):
-            if scene is not None and drawn.actor is not None:
-                coloured = drawn.is_coloured
-                drawn.actor.prop.opacity = scene.map_opacity if coloured else scene.overlay_opacity
-        self._folds.set_visible(overlay_visible)
-        shows_map = overlay_visible and self._overlay.is_coloured
-        for drawn in (self._full, self._coarse):
-            drawn.set_depth(DEPTH_BEHIND_MAP if shows_map else WHOLE_DEPTH)
-        front = MAP_DEPTH if shows_map else WHOLE_DEPTH
-        for over in (self._overlay, self._coarse_overlay, self._folds, self._grid):
-            over.set_depth(front)
+        self._stage.set_coarse(self.is_coarse)
         self.update()
 
     def paintGL(self) -> None:
         """Render, and remember what a frame in full detail costs."""
         super().paintGL()
-        if not self.is_coarse and self._full.actor is not None:
+        if not self.is_coarse and self.surface is not None:
             # The first frame uploads everything: the cheapest one seen tells the truth, slowly
             # forgotten in case the machine has become busier.
             cheapest = self._full_frame_seconds or self.frame_seconds
@@ -271,7 +169,7 @@ class Canvas(FastView):
     @property
     def bone(self) -> pv.PolyData | None:
         """What the camera is fitted to: this side's mesh, else the overlay, else None."""
-        return self.surface.polydata if self.surface is not None else self._overlay.polydata
+        return self._stage.bone
 
     def look_at_all(self, frame: Matrix | None = None) -> None:
         """Fit everything, the longest axis upright and the widest across, or from a given side."""
@@ -297,9 +195,9 @@ class Canvas(FastView):
         self.renderer.ResetCameraClippingRange()
         self.update()
 
-    def view_key(self) -> tuple[Any, ...]:
+    def view_key(self) -> Hashable:
         """Return what decides which landmarks are hidden: camera, size and mesh."""
-        share = self._section.share if self._section is not None else None
+        share = self.section.share if self.section is not None else None
         camera = self.camera
         # Not its time stamp: the clipping range changes with every warp, and hides nothing.
         pose = (camera.GetPosition(), camera.GetFocalPoint(), camera.GetViewUp())
@@ -341,7 +239,7 @@ class Canvas(FastView):
         if self.surface is None:
             return None
         near, far = self._ray(at)
-        start = near if self._section is None else self._section.entry(near, far)
+        start = near if self.section is None else self.section.entry(near, far)
         return self.surface.first_hit(start, far) if start is not None else None
 
     def in_view_plane(self, at: QPointF, through: NDArray) -> NDArray:
@@ -375,7 +273,7 @@ class Canvas(FastView):
             eye = eye + np.array(self.camera.direction) * -1e3 * self.surface.diagonal
         for i, position in enumerate(positions):
             # What is clipped away neither hides nor can be grabbed.
-            start = eye if self._section is None else self._section.entry(eye, position)
+            start = eye if self.section is None else self.section.entry(eye, position)
             hidden[i] = start is None or self.surface.hides(start, position)
         return hidden
 

@@ -23,8 +23,8 @@ from pinwarp.gui.scene.camera_pose import (
 from pinwarp.gui.style.icons import icon
 from pinwarp.gui.views.camera_link import CameraLink
 from pinwarp.gui.views.canvas import Canvas
+from pinwarp.gui.views.scenes import Scenes
 from pinwarp.session.editor import Editor, LinkMode
-from pinwarp.session.session import Session
 
 LINK_ACTIONS = {
     LinkMode.LINKED: "link_linked",
@@ -46,6 +46,8 @@ class ViewControls(QObject):
         Its view state is what the actions change.
     views
         One per side.
+    scenes
+        What they show.
     actions
         By their keys.
     parent
@@ -56,6 +58,7 @@ class ViewControls(QObject):
         self,
         editor: Editor,
         views: Mapping[Side, Canvas],
+        scenes: Scenes,
         actions: Mapping[str, QAction],
         parent: QObject,
     ) -> None:
@@ -70,6 +73,7 @@ class ViewControls(QObject):
         self._pairs = 0
         self.link = CameraLink(views, self.pairing_fit)
         self._connect()
+        scenes.shown.connect(self._on_shown)
         self._on_view()
 
     def _connect(self) -> None:
@@ -90,7 +94,6 @@ class ViewControls(QObject):
         self._on_trigger("markers_smaller", lambda: self._resize_markers(-1))
         self.section_slider.valueChanged.connect(self._on_section_moved)
         editor.view_changed.connect(self._on_view)
-        editor.session_changed.connect(self._on_session)
 
     def _on_trigger(self, key: str, call: Callable[..., object]) -> None:
         # Qt's "checked" argument is of no use to any of them.
@@ -110,7 +113,6 @@ class ViewControls(QObject):
         """Let go of the cameras and the editor."""
         self.link.unlink()
         self._editor.view_changed.disconnect(self._on_view)
-        self._editor.session_changed.disconnect(self._on_session)
 
     # What changed
 
@@ -129,8 +131,8 @@ class ViewControls(QObject):
             self.section_slider.setValue(round(view.section * self.section_slider.maximum()))
         actions["link_next"].setToolTip(f"Cameras are {view.link.value} (K changes it)")
 
-    def _on_session(self, session: Session) -> None:
-        surfaces, pairs = self._surfaces_now(), len(session.pairs)
+    def _on_shown(self) -> None:
+        surfaces, pairs = self._surfaces_now(), len(self._editor.session.pairs)
         # Each view has just fitted its new bone by itself, from a side of its own choice. Pairs
         # that come many at once are from a file: nobody is aiming at a place on the bone.
         unaligned = surfaces != self._surfaces or (self._pairs < 3 and pairs > self._pairs + 1)

@@ -12,7 +12,8 @@ from qtpy.QtGui import QDragEnterEvent, QDropEvent, QKeyEvent, QMouseEvent, QWhe
 from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.landmarks import Side
-from pinwarp.gui.scene.scene import Marker
+from pinwarp.gui.drawn.surfaces import Surfaces
+from pinwarp.gui.scene.drawables import Marker
 from pinwarp.gui.views.canvas import Canvas
 
 # A press released within SLOP pixels is a click; one begun within REACH of a landmark grabs it.
@@ -56,9 +57,9 @@ class Viewport(Canvas):
     hovered = Signal(object)
     files_dropped = Signal(list)
 
-    def __init__(self, side: Side, parent: QWidget | None = None) -> None:
+    def __init__(self, side: Side, surfaces: Surfaces, parent: QWidget | None = None) -> None:
         self._press: _Press | None = None
-        super().__init__(side, parent)
+        super().__init__(side, surfaces, parent)
         self._passing: Qt.MouseButton | None = None
         self._hovered: str | None = None
         self._zoom_rest = QTimer(self)

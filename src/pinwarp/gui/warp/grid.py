@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,8 +15,9 @@ from pinwarp.core.lattice import box_lattice, plane_lattice
 from pinwarp.core.live import PreviewPoints, preview
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import Spline
+from pinwarp.gui.scene.drawables import Drawable, GridLines
 from pinwarp.gui.tasks.jobs import LatestWins
-from pinwarp.gui.views.canvas import Canvas
+from pinwarp.gui.views.scenes import Scenes
 from pinwarp.gui.warp.warps import Presenter
 from pinwarp.session.editor import Editor, GridKind
 
@@ -46,8 +47,8 @@ class GridPresenter(QObject):
         Its view state is what the actions change.
     presenter
         Where the warps come from.
-    views
-        One per side.
+    scenes
+        Where it is shown.
     actions
         The window's actions by key.
     parent
@@ -58,18 +59,19 @@ class GridPresenter(QObject):
         self,
         editor: Editor,
         presenter: Presenter,
-        views: Mapping[Side, Canvas],
+        scenes: Scenes,
         actions: Mapping[str, QAction],
         parent: QObject,
     ) -> None:
         super().__init__(parent)
         self._editor = editor
         self._presenter = presenter
-        self._views = views
+        self._scenes = scenes
         self._actions = actions
         self._drawn_for: tuple[Mesh, GridKind, float] | None = None
         self._bounds: tuple[Mesh, NDArray[np.float64]] | None = None
         self._grid: _Grid | None = None
+        self._lines: dict[Side, GridLines | None] = dict.fromkeys(Side)
         self._asked: _Request | None = None
         self._warps = LatestWins(_warped)
         self._warps.computed.connect(self._on_warped)
@@ -112,7 +114,7 @@ class GridPresenter(QObject):
             return
         self._drawn_for = wanted
         self._grid = self._grid_of(*wanted) if wanted is not None else None
-        self._views[Side.SOURCE].show_grid(self._grid.lines if self._grid is not None else None)
+        self._show(Side.SOURCE, self._grid.lines if self._grid is not None else None)
         self._ask()
 
     def _grid_of(self, mesh: Mesh, kind: GridKind, share: float) -> _Grid:
@@ -134,7 +136,7 @@ class GridPresenter(QObject):
         mesh = self._drawn_for[0] if self._drawn_for is not None else None
         if grid is None or result is None or result.shown is None or result.inputs.mesh is not mesh:
             if self._asked is not None:
-                self._views[Side.DESTINATION].show_grid(None)
+                self._show(Side.DESTINATION, None)
             self._asked = None
             return
         request = _Request(grid, result.shown)
@@ -146,7 +148,17 @@ class GridPresenter(QObject):
         request, lines = warped
         # One that is late still shows the way while something moves, unless the grid is another.
         if self._asked is not None and request.grid is self._grid:
-            self._views[Side.DESTINATION].show_grid(lines)
+            self._show(Side.DESTINATION, lines)
+
+    def _show(self, side: Side, lines: NDArray | None) -> None:
+        self._lines[side] = GridLines(lines) if lines is not None else None
+        self._scenes.renew()
+
+    def drawables(self, side: Side) -> Iterator[Drawable]:
+        """Return the grid of a side."""
+        lines = self._lines[side]
+        if lines is not None:
+            yield lines
 
     def _on_failure(self, error: Exception) -> None:
         raise error

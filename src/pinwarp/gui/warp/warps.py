@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 import weakref
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 from typing import Any
@@ -15,16 +16,16 @@ from psygnal import Signal
 from pinwarp.core.landmarks import Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import PenaltyConvention
-from pinwarp.gui.drawn.mesh import OverlayWarp
-from pinwarp.gui.drawn.surface import Surface, shading_normals, triangles
+from pinwarp.gui.drawn.surface import shading_normals, triangles
+from pinwarp.gui.drawn.surfaces import Surfaces
 from pinwarp.gui.penalty.panel import PenaltyPanel
 from pinwarp.gui.placing.hand import LandmarkRequests
-from pinwarp.gui.scene.scene import scene_of
+from pinwarp.gui.scene.drawables import Drawable, Motion, Overlay, OverlayWarp
+from pinwarp.gui.scene.session_scene import session_drawables
 from pinwarp.gui.table.table import LandmarkModel, LandmarkTable
 from pinwarp.gui.tasks.jobs import LatestWins
+from pinwarp.gui.views.scenes import Scenes
 from pinwarp.gui.views.viewport import Viewport
-from pinwarp.io.mesh_reference import MeshReference
-from pinwarp.io.meshes import MeshFile
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.quality import Quality, quality_of
@@ -34,6 +35,10 @@ from pinwarp.session.warp.solver import EAGER_MODES, WarpInputs, WarpResult, War
 
 # A table of figures that run is not read: while something moves it is renewed this often (s).
 TABLE_PAUSE = 0.25
+
+
+# In full, and as a stand-in.
+_Warps = tuple[OverlayWarp | None, OverlayWarp | None]
 
 
 class _Kind(Enum):
@@ -57,7 +62,7 @@ class _Shaded:
 
     result: WarpResult
     kind: _Kind
-    warps: tuple[OverlayWarp | None, OverlayWarp | None] = (None, None)
+    warps: _Warps = (None, None)
     quality: Quality | None = None
 
 
@@ -73,6 +78,10 @@ class Presenter:
         The truth.
     viewports
         One per side.
+    scenes
+        Where bones, overlay and landmarks are shown.
+    surfaces
+        Where meshes become surfaces.
     model, table, panel
         The other views.
     """
@@ -83,16 +92,19 @@ class Presenter:
         self,
         editor: Editor,
         viewports: dict[Side, Viewport],
+        scenes: Scenes,
+        surfaces: Surfaces,
         model: LandmarkModel,
         table: LandmarkTable,
         panel: PenaltyPanel,
     ) -> None:
         self._editor = editor
         self._viewports = viewports
+        self._scenes = scenes
+        self._surfaces = surfaces
         self._model = model
         self._table = table
         self._panel = panel
-        self._surfaces: weakref.WeakKeyDictionary[Mesh, Surface] = weakref.WeakKeyDictionary()
         self.solver = WarpSolver()
         self._warps = LatestWins(self._warp)
         self._asked: tuple[WarpInputs, bool] | None = None
@@ -100,10 +112,11 @@ class Presenter:
         self._quality: Quality | None = None
         self._table_shown_at = self._judged_at = 0.0
         self._shown: weakref.WeakKeyDictionary[Mesh, OverlayWarp] = weakref.WeakKeyDictionary()
-        self.ghosts: dict[Side, Ghost | None] = dict.fromkeys(Side)
+        self._overlay: _Warps = (None, None)
+        self._is_moving = False
         self._known_ghosts: dict[Side, Ghost | None] = {}
         self._ghost_keys: dict[Side, object] = {}
-        self.requests = LandmarkRequests(editor, viewports, self.ghosts.get)
+        self.requests = LandmarkRequests(editor, viewports, self.ghost)
         self._connect()
         self._on_session(editor.session)
 
@@ -143,24 +156,9 @@ class Presenter:
         current = WarpInputs.of(self._editor.session, asked.stand_in)
         return asked == current and previewed == self._editor.is_previewing
 
-    def keep_surface(self, mesh: Mesh, surface: Surface) -> None:
-        """Remember a surface made in a loading job for when its mesh is shown."""
-        self._surfaces[mesh] = surface
-
-    def _surface(self, mesh: Mesh | None) -> Surface | None:
-        if mesh is None:
-            return None
-        if mesh not in self._surfaces:
-            self._surfaces[mesh] = Surface(mesh)
-        return self._surfaces[mesh]
-
     # From the session to the screen
 
     def _on_session(self, session: Session) -> None:
-        for side, viewport in self._viewports.items():
-            viewport.show_surface(self._surface(session.mesh(side)))
-            file = session.mesh_file(side)
-            viewport.layer.caption = "" if file is None else _caption(file)
         self._model.show_session(session)
         self._panel.show_session(session)
         self._on_looks()
@@ -168,10 +166,10 @@ class Presenter:
 
     def _ask(self) -> None:
         """Ask the worker for the warp of the session as it is, if it is another."""
-        editor, destination = self._editor, self._viewports[Side.DESTINATION]
-        if editor.is_previewing:
-            destination.set_warping(True)
-        inputs, previewing = self._inputs(), editor.is_previewing
+        inputs, previewing = self._inputs(), self._editor.is_previewing
+        if previewing and not self._is_moving:
+            self._is_moving = True
+            self._scenes.renew()
         if (inputs, previewing) == self._asked:
             return
         self._asked = (inputs, previewing)
@@ -181,38 +179,40 @@ class Presenter:
     def _inputs(self) -> WarpInputs:
         """Return what the warp depends on, with a stand-in where drawing in full is slow."""
         session = self._editor.session
-        surface = self._surface(session.mesh(Side.SOURCE))
-        slow = self._viewports[Side.DESTINATION].is_slow
-        stand_in = surface.stand_in if surface is not None and slow else None
+        mesh, slow = session.mesh(Side.SOURCE), self._viewports[Side.DESTINATION].is_slow
+        stand_in = self._surfaces.of(mesh).stand_in if mesh is not None and slow else None
         return WarpInputs.of(session, stand_in)
 
     def _on_looks(self, _changed: Any = None) -> None:
-        editor = self._editor
-        self._table.show_selection(editor.selection)
-        for side, viewport in self._viewports.items():
-            self.ghosts[side] = self._ghost(side)
-            viewport.show_scene(
-                scene_of(
-                    side,
-                    editor.session,
-                    editor.selection,
-                    editor.view,
-                    self.result,
-                    self.ghosts[side],
-                    self._quality,
-                )
-            )
+        self._table.show_selection(self._editor.selection)
+        self._scenes.renew()
+
+    def drawables(self, side: Side) -> Iterator[Drawable]:
+        """Return bones, landmarks, and what the warp makes of them."""
+        editor, view = self._editor, self._editor.view
+        yield from session_drawables(
+            side, editor.session, editor.selection, view, self.result, self._quality
+        )
+        ghost = self.ghost(side)
+        if ghost is not None:
+            yield ghost
+        if side is Side.DESTINATION:
+            full, stand_in = self._overlay
+            if full is not None or stand_in is not None:
+                yield Overlay(full, stand_in, view.overlay, view.opacity, view.map_opacity)
+            if self._is_moving:
+                yield Motion()
 
     def show_quality(self, quality: Quality | None) -> None:
         """Show where the other pairs expect the selected landmarks."""
         self._quality = quality
-        self._on_looks()
+        self._scenes.renew()
 
-    def _ghost(self, side: Side) -> Ghost | None:
+    def ghost(self, side: Side) -> Ghost | None:
         """Predict where the next landmark of a side should be, on that side's surface."""
         editor, result = self._editor, self.result
-        surface = self._surface(editor.session.mesh(side))
-        if surface is None or result is None or editor.is_previewing:
+        mesh = editor.session.mesh(side)
+        if mesh is None or result is None or editor.is_previewing:
             return None
         name = self.requests.target(side)
         landmark = editor.session.landmark(name) if name else None
@@ -221,7 +221,7 @@ class Presenter:
             self._ghost_keys[side] = key
             ghost = ghost_of(landmark, side, result)
             if ghost is not None:
-                place, _ = surface.closest(ghost.position)
+                place, _ = self._surfaces.of(mesh).closest(ghost.position)
                 ghost = replace(ghost, position=as_position(place))
             self._known_ghosts[side] = ghost
         return self._known_ghosts[side]
@@ -266,28 +266,24 @@ class Presenter:
             return shown
         normals = shading_normals(triangles(vertices, mesh.faces))
         # The warped surface shows its inside when it did so before, or when the warp mirrors it.
-        whole = self._surface(result.inputs.mesh)
+        whole = result.inputs.mesh
         affine = result.shown.affine[1:] if result.shown is not None else np.eye(3)
         mirrored = bool(np.linalg.det(affine) < 0)
-        inside_out = (whole is not None and whole.inside_out) != mirrored
+        inside_out = (whole is not None and self._surfaces.of(whole).inside_out) != mirrored
         self._shown[mesh] = OverlayWarp(mesh, vertices, normals, inside_out)
         return self._shown[mesh]
 
     def _on_warp(self, shaded: _Shaded) -> None:
-        result, viewport = shaded.result, self._viewports[Side.DESTINATION]
-        if shaded.kind is _Kind.REFINE and (
-            self.result is None or result.inputs != self.result.inputs
-        ):
+        result, before = shaded.result, self.result
+        if shaded.kind is _Kind.REFINE and (before is None or result.inputs != before.inputs):
             return
         self.result = result
         if shaded.kind is not _Kind.REFINE:
-            if shaded.warps == (None, None):
-                viewport.hide_overlay()
-            else:
-                viewport.show_overlay(shaded.warps)
+            same_mesh = before is not None and before.inputs.mesh is result.inputs.mesh
+            self._overlay = _over(shaded.warps, self._overlay if same_mesh else (None, None))
         if shaded.kind is not _Kind.PREVIEW and not self._editor.is_previewing:
             # Only now: the stand-in stays until the full mesh has caught up.
-            viewport.set_warping(False)
+            self._is_moving = False
         now = time.monotonic()
         due = shaded.quality is not None or now - self._table_shown_at > 2 * TABLE_PAUSE
         due |= shaded.kind is not _Kind.PREVIEW
@@ -320,9 +316,8 @@ class Presenter:
         self._editor.commit(edits.set_planar(self._editor.committed, planar), label)
 
 
-def _caption(file: MeshFile | MeshReference) -> str:
-    """Return the name of a mesh's file, and how the mesh differs from what is in it."""
-    ways = [f"mirrored: {file.mirrored}"] if file.mirrored else []
-    if file.scaled != 1:
-        ways.append(f"× {file.scaled:g}")
-    return f"{file.path.name} ({', '.join(ways)})" if ways else file.path.name
+def _over(warps: _Warps, before: _Warps) -> _Warps:
+    """Return what is drawn after a warp: of what it did not renew, the last one stays."""
+    if warps == (None, None):
+        return warps
+    return warps[0] or before[0], warps[1] or before[1]

@@ -18,6 +18,7 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.landmarks import Side
+from pinwarp.gui.drawn.surfaces import Surfaces
 from pinwarp.gui.findings.panel import FindingsPanel
 from pinwarp.gui.maps.panel import MapPanel
 from pinwarp.gui.penalty.panel import PenaltyPanel
@@ -41,7 +42,8 @@ class WindowFrame(QMainWindow):
 
     def __init__(self) -> None:
         super().__init__()
-        self.viewports = {side: Viewport(side) for side in Side}
+        self.surfaces = Surfaces()
+        self.viewports = {side: Viewport(side, self.surfaces) for side in Side}
         self.model = LandmarkModel(self)
         self.table = LandmarkTable(self.model)
         self.actions_by_key = make_actions(self)

@@ -29,6 +29,7 @@ from pinwarp.gui.tasks.jobs import SlowJob
 from pinwarp.gui.tasks.progress import JobProgress
 from pinwarp.gui.tasks.stepped_job import SteppedJob
 from pinwarp.gui.views.controls import ViewControls
+from pinwarp.gui.views.scenes import Scenes
 from pinwarp.gui.warp.grid import GridPresenter
 from pinwarp.gui.warp.presenter import WarpPresenter
 from pinwarp.gui.warp.quality import QualityPresenter
@@ -71,10 +72,25 @@ class MainWindow(WindowFrame):
         self._recent = RecentFiles(settings)
         progress = JobProgress(self.statusBar(), (self.jobs, self.stepped))
         self.progress, self.cancel = progress.bar, progress.cancel
-        self.presenter = Presenter(self.editor, self.viewports, self.model, self.table, self.panel)
+        self.scenes = Scenes(self.viewports, self)
+        self.presenter = Presenter(
+            self.editor,
+            self.viewports,
+            self.scenes,
+            self.surfaces,
+            self.model,
+            self.table,
+            self.panel,
+        )
         self.quality = QualityPresenter(self.presenter)
         self.maps = MapPresenter(
-            self.editor, self.presenter, self.viewports, self.map_panel, self.actions_by_key, self
+            self.editor,
+            self.presenter,
+            self.scenes,
+            self.viewports[Side.DESTINATION],
+            self.map_panel,
+            self.actions_by_key,
+            self,
         )
         self.statusBar().addPermanentWidget(self.maps.fold_note)
         self.quality.quality_changed.connect(self.presenter.show_quality)
@@ -92,7 +108,8 @@ class MainWindow(WindowFrame):
             self.editor,
             self.presenter,
             self.quality,
-            self.viewports,
+            self.scenes,
+            self.viewports[Side.DESTINATION],
             self.panel,
             self.snapshot_strip,
             self.actions_by_key,
@@ -100,17 +117,20 @@ class MainWindow(WindowFrame):
             self,
         )
         self._bone_edits = BoneEdits(self.editor, self.actions_by_key, self)
-        self.view_controls = ViewControls(self.editor, self.viewports, self.actions_by_key, self)
+        self.view_controls = ViewControls(
+            self.editor, self.viewports, self.scenes, self.actions_by_key, self
+        )
         self.view_controls.add_to(self.findChild(QToolBar, "tools"))
         self.warp_presenter = WarpPresenter(
             self.editor, self.warp_panel, self.quality, self.actions_by_key, self.say, self
         )
         self.grid = GridPresenter(
-            self.editor, self.presenter, self.viewports, self.actions_by_key, self
+            self.editor, self.presenter, self.scenes, self.actions_by_key, self
         )
+        self.scenes.show_from(self.presenter, self.maps, self.grid, self.tuning.comparison)
         self.statusBar().addPermanentWidget(self.warp_presenter.note)
         self._tasks = FileTasks(self.editor, self.jobs, self.stepped, self._dialogs)
-        meshes = SessionMeshes(self._tasks, self.presenter.keep_surface)
+        meshes = SessionMeshes(self._tasks, self.surfaces.keep)
         self.saving = Saving(self.editor, self._tasks, self._recent)
         self.recovery = Recovery(self.editor, self._tasks, self.saving, meshes, state_folder, self)
         self.imports = LandmarkImports(self.editor, self._tasks)
@@ -278,7 +298,7 @@ class MainWindow(WindowFrame):
     @property
     def is_settled(self) -> bool:
         """Whether everything asked for is done and shown."""
-        parts = (self.presenter, self.quality, self.tuning, self.grid, self.maps)
+        parts = (self.presenter, self.quality, self.tuning, self.grid, self.maps, self.scenes)
         idle = self.jobs.is_idle and self.stepped.is_idle
         return idle and all(part.is_settled for part in parts)
 
@@ -293,6 +313,7 @@ class MainWindow(WindowFrame):
         self.recovery.shut_down()
         self.jobs.shut_down()
         self.stepped.shut_down()
+        self.scenes.shut_down()
         self.grid.shut_down()
         self.warp_presenter.shut_down()
         self.findings_presenter.shut_down()

@@ -7,14 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import vtkLookupTable
 
 from pinwarp.core.maps import MapKind, Range
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.lengths import round_length
 
-STEPS = 256
 # A legend of ratios that reaches further than so many doublings is written in powers of two.
 POWERS_FROM = 0.9
 _FRACTIONS = {-1: "½", -2: "¼", -3: "⅛"}
@@ -61,15 +58,6 @@ class ColourScale:
         places = np.linspace(low, high, len(anchors))
         columns = [np.interp(np.asarray(levels), places, channel) for channel in known.T]
         return np.round(np.column_stack(columns)).astype(np.uint8)
-
-    def table(self) -> vtkLookupTable:
-        """Return the colours as VTK looks them up, by level."""
-        colours = np.full((STEPS, 4), 255, dtype=np.uint8)
-        colours[:, :3] = self.colours(np.linspace(*self.ends, STEPS))
-        table = vtkLookupTable()
-        table.SetTable(numpy_to_vtk(colours, deep=True))
-        table.SetTableRange(*self.ends)
-        return table
 
     def ticks(self) -> list[Tick]:
         """Return the values to be written beside the colours, the lowest first."""
