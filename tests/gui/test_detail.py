@@ -40,13 +40,7 @@ def large(user, tmp_path, monkeypatch):
 
 def drawn(viewport):
     """The names of what is visible."""
-    parts = ("_full", "_coarse", "_overlay", "_coarse_overlay")
-    return {
-        part
-        for part in parts
-        if getattr(viewport, part).actor is not None
-        and getattr(viewport, part).actor.GetVisibility()
-    }
+    return {name for name, actor in viewport.actors.items() if actor.GetVisibility()}
 
 
 def test_the_stand_in_keeps_the_shape(large):
@@ -61,16 +55,16 @@ def test_a_small_mesh_needs_no_stand_in():
 
 def test_the_stand_in_is_drawn_while_the_slider_moves_and_the_mesh_when_it_rests(large):
     viewport = large.window.viewports[Side.DESTINATION]
-    assert drawn(viewport) == {"_full", "_overlay"}
+    assert drawn(viewport) == {"bone", "overlay"}
     slider = large.window.parts.penalty.panel.slider
     y = slider.height() // 2
     large.drag(slider, QPoint(8, y), QPoint(120, y), release=False)
-    assert drawn(viewport) == {"_coarse", "_coarse_overlay"}
+    assert drawn(viewport) == {"bone stand-in", "overlay stand-in"}
     assert len(viewport.overlay_points) < 60_000
     coarse = viewport.overlay_points
     QTest.mouseRelease(slider, Qt.MouseButton.LeftButton, pos=QPoint(120, y))
     large.settle()
-    assert drawn(viewport) == {"_full", "_overlay"}
+    assert drawn(viewport) == {"bone", "overlay"}
     full = viewport.overlay_points
     assert len(full) > 80_000
     # The change-over is no jump: the stand-in lies where the mesh lies.
@@ -82,10 +76,10 @@ def test_the_stand_in_is_drawn_while_the_camera_orbits(large):
     viewport = large.window.viewports[Side.SOURCE]
     centre = viewport.rect().center()
     large.drag(viewport, centre, centre + QPoint(50, 0), release=False)
-    assert drawn(viewport) == {"_coarse"}
+    assert drawn(viewport) == {"bone stand-in"}
     QTest.mouseRelease(viewport, Qt.MouseButton.LeftButton, pos=centre + QPoint(50, 0))
     large.settle()
-    assert drawn(viewport) == {"_full"}
+    assert drawn(viewport) == {"bone"}
 
 
 def test_zooming_shows_the_mesh_again_soon_after_the_last_notch(large):
@@ -102,8 +96,8 @@ def test_zooming_shows_the_mesh_again_soon_after_the_last_notch(large):
         False,
     )
     QApplication.sendEvent(viewport, event)
-    assert drawn(viewport) == {"_coarse"}
-    large.qtbot.waitUntil(lambda: drawn(viewport) == {"_full"})
+    assert drawn(viewport) == {"bone stand-in"}
+    large.qtbot.waitUntil(lambda: drawn(viewport) == {"bone"})
 
 
 def test_escape_during_a_slow_drag_brings_the_mesh_back(large):
@@ -118,7 +112,7 @@ def test_escape_during_a_slow_drag_brings_the_mesh_back(large):
     large.drag(viewport, start, start + QPoint(0, 20), release=False)
     assert viewport.is_coarse
     large.press(Qt.Key.Key_Escape, widget=viewport)
-    assert drawn(viewport) == {"_full", "_overlay"}
+    assert drawn(viewport) == {"bone", "overlay"}
     assert np.allclose(viewport.overlay_points, before)
 
 

@@ -9,6 +9,7 @@ from qtpy.QtTest import QTest
 
 from pinwarp.core.landmarks import LandmarkState, Role, Side
 from pinwarp.session import edits
+from pinwarp.session.warp.ghost import Ghost
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
 SHIFT, CTRL = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.ControlModifier
@@ -158,7 +159,7 @@ def test_space_accepts_the_ghost_near_where_the_landmark_was(user, side):
     assert ghost.name == name
     assert 0 < ghost.deviation < 30
     assert np.linalg.norm(np.array(ghost.position) - truth) < 8
-    assert user.window.viewports[side].layer.ghost == ghost
+    assert user.window.viewports[side].drawn(Ghost) == ghost
     user.press(Qt.Key.Key_Space)
     placed = user.session.landmark(name).position(side)
     assert placed == ghost.position
@@ -174,7 +175,7 @@ def test_a_click_elsewhere_overrides_the_ghost(user):
     user.click(DESTINATION, elsewhere + QPoint(0, 60))
     placed = user.session.landmark("femoral_head_anterior").destination
     assert placed is not None
-    assert viewport.layer.ghost is None
+    assert viewport.drawn(Ghost) is None
 
 
 def test_below_three_pairs_there_is_no_ghost(user):
@@ -184,8 +185,7 @@ def test_below_three_pairs_there_is_no_ghost(user):
     session = edits.remove_side(session, names[1], DESTINATION)
     user.editor.commit(session, "Keep two")
     user.settle()
-    ghosts = user.window.parts.ghosts
-    assert (ghosts.at(SOURCE), ghosts.at(DESTINATION)) == (None, None)
+    assert [user.window.parts.ghosts.at(side) for side in Side] == [None, None]
     user.press(Qt.Key.Key_Space)
     assert "nothing to accept" in user.window.statusBar().currentMessage()
 

@@ -13,6 +13,7 @@ from qtpy.QtWidgets import QApplication
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.files.documents import Opening
 from pinwarp.gui.files.file_dialogs import Answer
+from pinwarp.gui.scene.drawables import Hint
 from pinwarp.io.meshes import read_mesh
 from pinwarp.io.samples import assets_folder
 from pinwarp.io.session_file import read_session
@@ -41,8 +42,8 @@ def drop(viewport, *paths):
 
 
 def test_an_empty_window_says_what_to_do_next(user):
-    assert "source mesh" in user.window.viewports[SOURCE].layer.hint
-    assert "destination mesh" in user.window.viewports[DESTINATION].layer.hint
+    assert "source mesh" in user.window.viewports[SOURCE].drawn(Hint).words
+    assert "destination mesh" in user.window.viewports[DESTINATION].drawn(Hint).words
     assert "Open the source mesh" in user.window.parts.guidance.hint.text()
     assert not user.window.actions_by_key["export_mesh"].isEnabled()
 

@@ -14,6 +14,7 @@ from tests.gui.test_files import drop
 from pinwarp.core.landmarks import Landmark, Side, scaled
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui.files.documents import Opening
+from pinwarp.gui.scene.drawables import Caption, ScaleBar
 from pinwarp.gui.window.window_dialogs import WindowDialogs
 from pinwarp.io.landmark_files import write_landmarks
 from pinwarp.io.meshes import read_mesh, write_mesh
@@ -445,7 +446,7 @@ def test_a_mesh_in_another_unit_can_be_scaled_and_the_session_remembers(user, sm
     ]
     assert np.isclose(user.session.mesh(SOURCE).diagonal, 449.588, rtol=1e-5)
     assert user.session.unit == "mm"
-    assert user.window.viewports[SOURCE].layer.caption == "generic_m.ply (× 1000)"
+    assert user.window.viewports[SOURCE].drawn(Caption).file == "generic_m.ply (× 1000)"
     path = tmp_path / "scaled.pinwarp.csv"
     user.dialogs.saves = [path]
     user.trigger("save_as")
@@ -471,12 +472,10 @@ def test_scaling_takes_the_landmarks_along_and_is_one_step(user, small_bone, bri
 
 def test_a_unit_that_is_wrong_on_one_side_is_not_shown_there(user, small_bone):
     open_apart(user, small_bone)
-    assert user.window.viewports[SOURCE].layer.unit == "m"
-    assert user.window.viewports[DESTINATION].layer.unit == ""
-    columns = {
-        user.window.parts.table.model.title(i)
-        for i in range(user.window.parts.table.model.columnCount())
-    }
+    assert user.window.viewports[SOURCE].drawn(ScaleBar).unit == "m"
+    assert user.window.viewports[DESTINATION].drawn(ScaleBar).unit == ""
+    model = user.window.parts.table.model
+    columns = {model.title(number) for number in range(model.columnCount())}
     assert {"Source x\nm", "Dest. x", "Residual", "Left out"} <= columns
 
 

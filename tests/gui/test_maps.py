@@ -16,6 +16,7 @@ from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import Side, as_position, positions
 from pinwarp.core.maps import MapKind
 from pinwarp.gui.maps.presenter import MAP_ACTIONS
+from pinwarp.gui.scene.drawables import Colouring, FoldedSurface, Ghost, Star
 from pinwarp.gui.style.colour_scale import ColourScale
 from pinwarp.io.samples import assets_folder
 from pinwarp.session import edits
@@ -40,6 +41,30 @@ def there(user):
 def choose(user, kind):
     """Choose a map from the menu View > Maps."""
     user.trigger(MAP_ACTIONS[kind])
+
+
+def overlay(user, name="overlay"):
+    """The actor of the warped source."""
+    return there(user).actors[name]
+
+
+def is_coloured(user, name="overlay"):
+    """Whether the warped source shows a map: in the scene, and as it is rendered."""
+    coloured = bool(overlay(user, name).mapper.GetScalarVisibility())
+    assert coloured == (there(user).drawn(Colouring) is not None)
+    return coloured
+
+
+def levels(user, name="overlay"):
+    """What the vertices of the warped source are coloured by."""
+    return np.array(overlay(user, name).mapper.dataset.point_data["map"])
+
+
+def folds_drawn(user):
+    """Whether folds are drawn: in the scene, and as they are rendered."""
+    rendered = "folds" in there(user).actors
+    assert rendered == (there(user).drawn(FoldedSurface) is not None)
+    return rendered
 
 
 def colours_on_the_bone(user):
@@ -71,20 +96,20 @@ def hues(pixels):
 def test_a_map_chosen_from_the_menu_colours_the_warped_source_and_leaves_when_it_is_switched_off(
     sample,
 ):
-    actor = there(sample)._overlay.actor
+    actor = overlay(sample)
     plain = colours_on_the_bone(sample)
     choose(sample, MapKind.UNCERTAINTY)
     mapped = colours_on_the_bone(sample)
     assert hues(plain)[0] < 0.02
     assert hues(mapped)[0] > 0.2
-    assert there(sample)._overlay.actor is actor, "written in place, not added anew"
+    assert overlay(sample) is actor, "written in place, not added anew"
     legend = there(sample).map_legend
     assert legend.isVisible()
     assert legend.content.title == "Uncertainty of the warp"
     choose(sample, None)
     assert not legend.isVisible()
     assert np.abs(colours_on_the_bone(sample) - plain).mean() < 1
-    assert there(sample)._overlay.actor is actor
+    assert overlay(sample) is actor
 
 
 def test_the_key_m_shows_one_map_after_the_other_and_then_none(sample):
@@ -123,17 +148,16 @@ def test_the_opacity_of_a_map_is_its_own(sample):
     for _ in range(2):
         QTest.keyClick(slider, Qt.Key.Key_PageDown)
     assert sample.editor.view.map_opacity == 0.8
-    assert there(sample)._overlay.actor.prop.opacity == 0.8
+    assert overlay(sample).prop.opacity == 0.8
     choose(sample, None)
     assert sample.editor.view.opacity == before
     assert slider.value() == round(100 * before)
-    assert there(sample)._overlay.actor.prop.opacity == before
+    assert overlay(sample).prop.opacity == before
 
 
 def test_the_overlay_is_plain_while_a_landmark_is_dragged_and_coloured_when_it_rests(sample):
     choose(sample, MapKind.DISTANCE)
-    overlay = there(sample)._overlay
-    before = np.array(overlay.polydata.point_data["map"])
+    before = levels(sample)
     layer = there(sample).layer
     marker = next(
         m
@@ -143,21 +167,21 @@ def test_the_overlay_is_plain_while_a_landmark_is_dragged_and_coloured_when_it_r
     start = sample.place_of(DESTINATION, marker.position)
     end = start + QPoint(0, 20)
     sample.drag(there(sample), start, end, release=False)
-    assert not overlay.is_coloured
-    assert overlay.actor.prop.opacity == sample.editor.view.opacity
+    assert not is_coloured(sample)
+    assert overlay(sample).prop.opacity == sample.editor.view.opacity
     QTest.mouseRelease(
         there(sample), Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, end
     )
     sample.settle()
-    assert overlay.is_coloured
-    after = np.array(overlay.polydata.point_data["map"])
+    assert is_coloured(sample)
+    after = levels(sample)
     assert np.abs(after - before).max() > 0.01
     sample.drag(there(sample), end, end + QPoint(6, 10), release=False)
-    assert not overlay.is_coloured
+    assert not is_coloured(sample)
     QTest.keyClick(there(sample), Qt.Key.Key_Escape)
     sample.settle()
-    assert overlay.is_coloured, "a cancelled drag leaves the map of the warp that is back"
-    assert np.array_equal(overlay.polydata.point_data["map"], after)
+    assert is_coloured(sample), "a cancelled drag leaves the map of the warp that is back"
+    assert np.array_equal(levels(sample), after)
 
 
 def test_a_click_on_the_legend_fixes_its_range_while_the_penalty_changes_and_another_frees_it(
@@ -172,16 +196,16 @@ def test_a_click_on_the_legend_fixes_its_range_while_the_penalty_changes_and_ano
     assert panel.fixed.isChecked()
     sample.editor.commit(edits.set_penalty(sample.session, float("inf")), "Change penalty")
     sample.settle()
-    assert legend.content.scale == before.scale
+    assert legend.content.range == before.range
     assert legend.content.clipped == (False, True), "worse than the fixed range shows"
-    assert sample.window.parts.maps.survey.map.range[1] > before.scale.range[1]
+    assert sample.window.parts.maps.survey.map.range[1] > before.range[1]
     sample.press(Qt.Key.Key_M)
     assert not legend.content.fixed, "each map has its own range"
     choose(sample, MapKind.DISTANCE)
     assert legend.content.fixed
     QTest.mouseClick(legend, Qt.MouseButton.LeftButton)
     assert not legend.content.fixed
-    assert legend.content.scale.range == sample.window.parts.maps.survey.map.range
+    assert legend.content.range == sample.window.parts.maps.survey.map.range
 
 
 def type_into(line, text):
@@ -206,12 +230,16 @@ def test_a_range_typed_into_the_panel_is_the_legends_and_nonsense_is_refused_in_
     )
     type_into(panel.low, "0,5")
     type_into(panel.high, "3")
-    assert legend.content.scale == ColourScale(MapKind.VOLUME, (0.5, 3.0))
-    assert [tick.text for tick in legend.content.scale.ticks()] == ["½", "1", "2"]
+    assert (legend.content.kind, legend.content.range) == (MapKind.VOLUME, (0.5, 3.0))
+    assert [tick.text for tick in ColourScale(MapKind.VOLUME, (0.5, 3.0)).ticks()] == [
+        "½",
+        "1",
+        "2",
+    ]
     type_into(panel.low, "-1")
     assert "above 0" in panel.note.text()
     assert panel.note.isVisible()
-    assert legend.content.scale.range == (0.5, 3.0)
+    assert legend.content.range == (0.5, 3.0)
     assert panel.low.text() == "0.5"
     QTest.mouseClick(
         panel.automatic, Qt.MouseButton.LeftButton, pos=QPoint(8, panel.automatic.height() // 2)
@@ -226,8 +254,8 @@ def test_the_legend_gives_way_to_caption_and_scale_bar_and_labels_give_way_to_it
     assert legend.top() > 12 + 1.9 * line
     assert legend.bottom() < viewport.height() - 14 - 7 - line
     beside = QPointF(legend.left() - 30, legend.center().y())
-    assert viewport.layer._room(beside) == legend.left()
-    assert viewport.layer._room(QPointF(beside.x(), viewport.height() - 20)) == viewport.width()
+    assert viewport.layer.room_at(beside) == legend.left()
+    assert viewport.layer.room_at(QPointF(beside.x(), viewport.height() - 20)) == viewport.width()
 
 
 def test_the_overall_difference_in_size_can_be_taken_out(sample):
@@ -337,7 +365,6 @@ def test_a_fold_stands_in_the_list_behind_the_swap_that_makes_it(folded):
 
 
 def test_a_fold_shines_through_the_bone_with_and_without_a_map_and_goes_with_its_cause(folded):
-    folds = there(folded)._folds
     QTest.mouseClick(folded.window.parts.findings.fold_note, Qt.MouseButton.LeftButton)
     folded.settle()
 
@@ -347,7 +374,7 @@ def test_a_fold_shines_through_the_bone_with_and_without_a_map_and_goes_with_its
 
     for kind in (None, MapKind.DISTANCE):
         choose(folded, kind)
-        assert folds.is_shown
+        assert folds_drawn(folded)
         assert loud() > 0.003
         folded.press(Qt.Key.Key_2)
         assert loud() > 0.0005
@@ -358,7 +385,7 @@ def test_a_fold_shines_through_the_bone_with_and_without_a_map_and_goes_with_its
     assert loud() == 0
     folded.press(Qt.Key.Key_W)
     folded.trigger("undo")
-    assert not folds.is_shown
+    assert not folds_drawn(folded)
     assert loud() == 0
 
 
@@ -389,11 +416,11 @@ def test_no_actor_is_left_over_when_maps_and_folds_come_and_go(folded):
 
 def test_the_suggested_place_is_far_from_landmarks_and_taken_by_a_key(sample):
     here = sample.window.viewports[SOURCE]
-    assert here.layer.suggestion is None
+    assert here.drawn(Star) is None
     sample.press(Qt.Key.Key_Space, SHIFT)
     assert "uncertainty" in sample.window.statusBar().currentMessage()
     choose(sample, MapKind.UNCERTAINTY)
-    suggestion = here.layer.suggestion
+    suggestion = here.drawn(Star).suggestion
     place = np.array(suggestion.position)
     assert here.surface.closest(place)[1] < 1e-4 * here.surface.diagonal
     taken = positions(sample.session.pairs, SOURCE)
@@ -406,13 +433,13 @@ def test_the_suggested_place_is_far_from_landmarks_and_taken_by_a_key(sample):
     new = sample.session.landmarks[-1]
     assert new.source == suggestion.position
     assert sample.editor.selection.names == (new.name,)
-    assert here.layer.suggestion is None, "it is there now"
-    assert there(sample).layer.ghost.name == new.name
+    assert here.drawn(Star) is None, "it is there now"
+    assert there(sample).drawn(Ghost).name == new.name
     sample.press(Qt.Key.Key_Space, SHIFT)
     assert f"{new.name} is there already" in sample.window.statusBar().currentMessage()
     sample.press(Qt.Key.Key_Space)
     assert sample.session.landmark(new.name).is_complete
-    following = here.layer.suggestion
+    following = here.drawn(Star).suggestion
     assert following.position != suggestion.position
     assert following.deviation < 1.05 * suggestion.deviation
 
@@ -461,18 +488,16 @@ def test_the_panel_has_a_button_for_the_suggested_place(sample):
 def test_a_stand_in_is_coloured_like_the_mesh_it_stands_for(large):
     choose(large, MapKind.VOLUME)
     viewport = there(large)
-    full, coarse = viewport._overlay, viewport._coarse_overlay
-    levels = np.array(coarse.polydata.point_data["map"])
-    all_levels = np.array(full.polydata.point_data["map"])
-    picked = np.linspace(0, len(levels) - 1, 40).astype(int)
+    coarse, all_levels = levels(large, "overlay stand-in"), levels(large)
+    picked = np.linspace(0, len(coarse) - 1, 40).astype(int)
     vertices = large.session.mesh(SOURCE).vertices
     stand_in = large.window.viewports[SOURCE].surface.stand_in
     for row in picked:
         nearest = np.argmin(np.linalg.norm(vertices - stand_in.vertices[row], axis=1))
-        assert levels[row] == all_levels[nearest]
+        assert coarse[row] == all_levels[nearest]
     viewport.set_orbiting(True)
-    assert coarse.is_coloured
-    assert coarse.actor.GetVisibility()
+    assert is_coloured(large, "overlay stand-in")
+    assert viewport.actors["overlay stand-in"].GetVisibility()
     viewport.set_orbiting(False)
 
 
@@ -496,8 +521,8 @@ def test_a_survey_that_comes_too_late_is_dropped(sample, monkeypatch):
     session = edits.move(sample.session, name, DESTINATION, as_position(place))
     sample.editor.commit(session, "Move")
     sample.qtbot.waitUntil(lambda: sample.window.parts.warps.result is not late)
-    assert not there(sample)._overlay.is_coloured
+    assert not is_coloured(sample)
     gate.set()
     sample.settle()
     assert [survey.result for survey in shown] == [sample.window.parts.warps.result]
-    assert there(sample)._overlay.is_coloured
+    assert is_coloured(sample)

@@ -110,9 +110,9 @@ def test_the_overlay_can_be_hidden_and_faded(user, panel):
 
     viewport = user.window.viewports[Side.DESTINATION]
     user.press(Qt.Key.Key_W)
-    assert not viewport._overlay.actor.GetVisibility()
+    assert not viewport.actors["overlay"].GetVisibility()
     assert not user.window.parts.overlay.opacity.isEnabled()
     user.press(Qt.Key.Key_W)
     slider = user.window.parts.overlay.opacity
     user.drag(slider, QPoint(slider.width() // 2, 8), QPoint(4, 8))
-    assert viewport._overlay.actor.prop.opacity < 0.3
+    assert viewport.actors["overlay"].prop.opacity < 0.3

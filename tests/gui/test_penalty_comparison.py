@@ -13,6 +13,7 @@ from qtpy.QtWidgets import QApplication, QWidget
 
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.penalty.comparison import PenaltyTrail
+from pinwarp.gui.scene.drawables import Badge
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 
@@ -42,7 +43,8 @@ def let_go(user, widget=None):
 
 
 def badge(user):
-    return user.window.viewports[Side.DESTINATION].layer.badge
+    shown = user.window.viewports[Side.DESTINATION].drawn(Badge)
+    return shown.words if shown is not None else ""
 
 
 def shown(user):

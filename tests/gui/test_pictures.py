@@ -14,6 +14,7 @@ from pinwarp.core.components import Components
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.exporting.offscreen import Offscreen
 from pinwarp.gui.exporting.picture_dialogs import AnimationDialog, PictureDialog
+from pinwarp.gui.scene.drawables import Arrows
 from pinwarp.session import edits
 
 DESTINATION = Side.DESTINATION
@@ -168,10 +169,10 @@ def test_arrows_and_the_grid_are_in_the_picture_where_the_window_shows_them(samp
     moved = edits.move(sample.session, pair.name, DESTINATION, (pair.destination[0] + 80, 0, 0))
     sample.editor.commit(edits.set_penalty(moved, np.inf), "Change penalty")
     sample.settle()
-    assert sample.window.viewports[DESTINATION].layer.arrows
+    assert sample.window.viewports[DESTINATION].drawn(Arrows)
     shown = picture(sample, tmp_path / "c.png", 800, 600, **size).astype(int)
     sample.trigger("arrows")
-    assert not sample.window.viewports[DESTINATION].layer.arrows
+    assert not sample.window.viewports[DESTINATION].drawn(Arrows)
     hidden = picture(sample, tmp_path / "d.png", 800, 600, **size).astype(int)
     assert apart(shown, hidden) > 0.0002
 
@@ -215,7 +216,7 @@ def test_tiles_fit_together(sample):
     view = sample.window.viewports[DESTINATION]
     pictures = []
     for tile in (1000, 130):
-        copy = Offscreen(view, tile)
+        copy = Offscreen(view, view.scene, tile)
         whole = np.zeros((333, 500, 4), np.uint8)
         for part in copy.tiles(500, 333):
             part.put_into(whole)

@@ -14,6 +14,7 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.gui.drawn.section import Section
 from pinwarp.gui.painted.scale_bar import paint_scale_bar
 from pinwarp.gui.scene.camera_pose import Pose, inverse
+from pinwarp.gui.scene.drawables import Caption, Markers, ScaleBar
 from pinwarp.gui.window.menus import shortcut_groups
 from pinwarp.io.mesh_formats.ply import write_ply
 from pinwarp.io.meshes import read_mesh
@@ -322,7 +323,7 @@ def test_the_scale_bar_is_as_long_as_its_length_looks_at_the_focal_plane(user, p
     ends = viewport.project(np.array([here.focal_point, here.focal_point + across]))
     pixels = float(np.linalg.norm(ends[1] - ends[0]))
     assert 50.0 / viewport.unit_per_pixel == pytest.approx(pixels, rel=1e-6)
-    assert viewport.layer.unit == "mm"
+    assert viewport.drawn(ScaleBar).unit == "mm"
 
 
 def test_the_scale_bar_is_in_the_corner_in_the_unit_of_the_session(qapp):
@@ -341,17 +342,17 @@ def test_the_scale_bar_is_in_the_corner_in_the_unit_of_the_session(qapp):
 
 def test_brackets_change_the_size_of_the_landmarks_within_bounds(user):
     user.open_sample()
-    layer = user.window.viewports[SOURCE].layer
-    assert layer.radius == 6
+    viewport = user.window.viewports[SOURCE]
+    assert viewport.drawn(Markers).radius == 6
     user.press(Qt.Key.Key_BracketRight)
-    assert layer.radius == 7
+    assert viewport.drawn(Markers).radius == 7
     for _ in range(8):
         user.press(Qt.Key.Key_BracketRight)
-    assert layer.radius == 12
+    assert viewport.drawn(Markers).radius == 12
     assert not user.window.actions_by_key["markers_larger"].isEnabled()
     for _ in range(10):
         user.press(Qt.Key.Key_BracketLeft)
-    assert layer.radius == 4
+    assert viewport.drawn(Markers).radius == 4
 
 
 def test_shift_w_draws_the_bones_as_edges_and_back(user):
@@ -359,8 +360,8 @@ def test_shift_w_draws_the_bones_as_edges_and_back(user):
     for style in ("Wireframe", "Surface"):
         user.press(Qt.Key.Key_W, Qt.KeyboardModifier.ShiftModifier)
         for viewport in user.window.viewports.values():
-            assert viewport._full.actor.prop.style == style
-    assert user.window.viewports[DESTINATION]._overlay.actor.prop.style == "Surface"
+            assert viewport.actors["bone"].prop.style == style
+    assert user.window.viewports[DESTINATION].actors["overlay"].prop.style == "Surface"
 
 
 def test_the_cross_section_lets_a_click_through_to_the_inside(user):
@@ -379,13 +380,13 @@ def test_the_cross_section_lets_a_click_through_to_the_inside(user):
     assert np.array(place) @ eye > middle
     assert np.array(landmark.source) @ eye <= middle + 1e-6
     # The cut stays where it is in the bone when the camera turns.
-    before = viewport._section.plane.GetNormal()
+    before = viewport.section.plane.GetNormal()
     orbit(user, SOURCE)
-    assert viewport._section.plane.GetNormal() == before
+    assert viewport.section.plane.GetNormal() == before
     user.press(Qt.Key.Key_X)
-    assert viewport._section is None
-    assert viewport._full.actor.mapper.GetClippingPlanes() is None or (
-        viewport._full.actor.mapper.GetClippingPlanes().GetNumberOfItems() == 0
+    assert viewport.section is None
+    assert viewport.actors["bone"].mapper.GetClippingPlanes() is None or (
+        viewport.actors["bone"].mapper.GetClippingPlanes().GetNumberOfItems() == 0
     )
 
 
@@ -405,13 +406,13 @@ def test_landmarks_on_the_part_that_is_cut_away_are_faint_and_cannot_be_grabbed(
 
 def test_the_overlay_is_cut_too_and_its_inside_is_drawn(user):
     user.open_sample()
-    overlay = user.window.viewports[DESTINATION]._overlay
-    assert overlay.actor.prop.culling == "back"
+    overlay = user.window.viewports[DESTINATION].actors["overlay"]
+    assert overlay.prop.culling == "back"
     user.press(Qt.Key.Key_X)
-    assert overlay.actor.mapper.GetClippingPlanes().GetNumberOfItems() == 1
-    assert overlay.actor.prop.culling == "none"
+    assert overlay.mapper.GetClippingPlanes().GetNumberOfItems() == 1
+    assert overlay.prop.culling == "none"
     user.press(Qt.Key.Key_X)
-    assert overlay.actor.prop.culling == "back"
+    assert overlay.prop.culling == "back"
 
 
 def test_a_section_clips_towards_the_eye_and_sight_begins_at_the_cut():
@@ -466,7 +467,7 @@ def test_swapping_the_sides_takes_every_position_with_its_bone_and_can_be_undone
     after = user.session
     assert after.mesh(SOURCE) is before.mesh(DESTINATION)
     assert after.landmarks[0].source == before.landmarks[0].destination
-    assert user.window.viewports[SOURCE].layer.caption == "femur_subject.ply"
+    assert user.window.viewports[SOURCE].drawn(Caption).file == "femur_subject.ply"
     vertices = after.mesh(SOURCE).vertices
     assert len(user.window.viewports[DESTINATION].overlay_points) == len(vertices)
     shown = {marker.name for marker in user.window.viewports[DESTINATION].layer.markers}
@@ -490,7 +491,7 @@ def test_a_mirrored_source_is_saved_and_comes_back_the_same(user, sample_copy):
     assert user.session.landmarks[0].source[0] == pytest.approx(2 * middle - landmark.source[0])
     surface = user.window.viewports[SOURCE].surface
     assert not surface.inside_out, "triangles turn round, so that normals point outwards"
-    assert "mirrored" in user.window.viewports[SOURCE].layer.caption
+    assert "mirrored" in user.window.viewports[SOURCE].drawn(Caption).file
     user.press(Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
     assert "# source_mirrored: x\n" in sample_copy.read_text(encoding="utf-8")
     saved = user.session

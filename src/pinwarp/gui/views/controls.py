@@ -26,8 +26,8 @@ from pinwarp.gui.scene.camera_pose import (
 from pinwarp.gui.style.icons import icon
 from pinwarp.gui.views.camera_link import CameraLink
 from pinwarp.gui.views.canvas import Canvas
+from pinwarp.gui.views.scenes import Scenes
 from pinwarp.session.editor import Editor, LinkMode
-from pinwarp.session.session import Session
 
 LINK_ACTIONS = {
     LinkMode.LINKED: "link_linked",
@@ -62,6 +62,8 @@ class ViewControls(Capability):
         Its view state is what the actions change.
     views
         One per side.
+    scenes
+        What they show.
     parent
         The window.
     """
@@ -70,6 +72,7 @@ class ViewControls(Capability):
         self,
         editor: Editor,
         views: Mapping[Side, Canvas],
+        scenes: Scenes,
         parent: QObject,
     ) -> None:
         self._editor = editor
@@ -96,7 +99,7 @@ class ViewControls(Capability):
         )
         self.section_slider.valueChanged.connect(self._on_section_moved)
         editor.view_changed.connect(self._on_view)
-        editor.session_changed.connect(self._on_session)
+        scenes.shown.connect(self._on_shown)
         self._on_view()
 
     def _link_action(self, mode: LinkMode) -> Action:
@@ -196,7 +199,6 @@ class ViewControls(Capability):
         """Let go of the cameras and the editor."""
         self.link.unlink()
         self._editor.view_changed.disconnect(self._on_view)
-        self._editor.session_changed.disconnect(self._on_session)
 
     # What changed
 
@@ -211,8 +213,8 @@ class ViewControls(Capability):
         if view.section is not None:
             self.section_slider.setValue(round(view.section * self.section_slider.maximum()))
 
-    def _on_session(self, session: Session) -> None:
-        surfaces, pairs = self._surfaces_now(), len(session.pairs)
+    def _on_shown(self) -> None:
+        surfaces, pairs = self._surfaces_now(), len(self._editor.session.pairs)
         # Each view has just fitted its new bone by itself, from a side of its own choice. Pairs
         # that come many at once are from a file: nobody is aiming at a place on the bone.
         unaligned = surfaces != self._surfaces or (self._pairs < 3 and pairs > self._pairs + 1)

@@ -36,10 +36,13 @@ class Scenes(QObject):
 
     Attributes
     ----------
+    shown : Signal
+        Emitted once all viewports show what is new.
     shows : int
         How many scenes were shown, each another than the one before in its view.
     """
 
+    shown = Signal()
     _due = Signal()
 
     def __init__(self, views: Mapping[Side, Canvas], parent: QObject) -> None:
@@ -73,7 +76,7 @@ class Scenes(QObject):
         """Show what is new at once: for who looks at the picture in this very turn."""
         if not self._is_due:
             return
-        self._is_due = False
+        self._is_due, before = False, self.shows
         for side, view in self._views.items():
             for contributor in self._contributors:
                 self._ask(contributor, side)
@@ -82,6 +85,8 @@ class Scenes(QObject):
             if scene != view.scene:
                 self.shows += 1
                 view.show_scene(scene)
+        if self.shows != before:
+            self.shown.emit()
 
     def _ask(self, contributor: Contributor, side: Side) -> None:
         """Ask for a part; where that fails, the last one stays and the others are still shown."""
