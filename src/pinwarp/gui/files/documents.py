@@ -138,6 +138,10 @@ class Documents(Capability):
             ),
         )
 
+    def shut_down(self) -> None:
+        """Take the menu of recent files away: it holds on to this."""
+        self.recent_menu.deleteLater()
+
     def open_sample(self) -> None:
         """Open the sample bones as a new session, asking about unsaved work first."""
         if self._saving.may_lose_changes():

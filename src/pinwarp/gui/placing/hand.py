@@ -203,9 +203,11 @@ class Hand(Capability):
 
     def drag(self, name: str, side: Side, position: Iterable[float]) -> None:
         """Show a landmark elsewhere while it is dragged."""
-        self._editor.select(name, side=side)
-        session = edits.move(self._editor.committed, name, side, as_position(position))
-        self._editor.preview(session)
+        editor = self._editor
+        editor.select(name, side=side)
+        # It may have been locked since it was drawn.
+        if not self._is_locked(editor.committed.landmark(name)):
+            editor.preview(edits.move(editor.committed, name, side, as_position(position)))
 
     def drop(self, name: str) -> None:
         """Leave a dragged landmark where it is."""

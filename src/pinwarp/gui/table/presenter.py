@@ -53,6 +53,7 @@ class TablePresenter(Capability):
         self._say = say
         self.model = LandmarkModel()
         self.table = LandmarkTable(self.model)
+        self.model.setParent(self.table)
         self.panel = LandmarkPanel(self.table)
         self.panels = (Panel("landmarks", "Landmarks", self.panel),)
         self.menus = {"row": self.panel.row_menu, "header": self.panel.header_menu}

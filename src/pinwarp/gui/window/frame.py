@@ -80,6 +80,10 @@ class WindowFrame(QMainWindow):
             placed(dock.toggleViewAction(), f"View.6{number}")
             for number, dock in enumerate(docks, 1)
         ]
+        for action in actions:
+            if action.parent() is None:
+                # What is connected to it goes when the window goes.
+                action.setParent(self)
         # Kept: Python must not let go of a menu that Qt still shows.
         self._menus = make_menus(self.menuBar(), [*actions, *toggles])
         for place, menu in (item for one in capabilities for item in one.menus.items()):
