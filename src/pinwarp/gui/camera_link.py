@@ -111,11 +111,11 @@ class CameraLink:
         self._poses[side] = pose
         other = self._poses[side.other]
         theirs = pose.mapped(relation)
-        if self._mode is LinkMode.ROTATION:
-            theirs = other.turned(theirs.frame)
         if not theirs.is_proper:
             # So far out that there is no such place.
             return
+        if self._mode is LinkMode.ROTATION:
+            theirs = other.turned(theirs.frame)
         self._busy = True
         try:
             self._views[side.other].set_pose(theirs)

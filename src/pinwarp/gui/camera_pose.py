@@ -19,6 +19,8 @@ Matrix = NDArray[np.float64]
 FILLED = 0.86
 # Positions less spread than this, compared with their longest direction, fix no turn about it.
 LEAST_SPREAD = 0.04
+# Squares of what is beyond, or nearer than its inverse, leave the range of numbers.
+FARAWAY = 1e100
 
 
 class StandardView(StrEnum):
@@ -74,10 +76,14 @@ class Pose:
     @property
     def is_proper(self) -> bool:
         """Whether it has a direction and an up across it: not so halfway through a change."""
-        with np.errstate(all="ignore"):
-            up, back = _direction(self.up), _direction(self.position - self.focal_point)
-            # Not so either where a number is not finite.
-            return bool(np.linalg.norm(np.cross(up, back)) > 1e-9)
+        places = np.abs([self.position, self.focal_point])
+        # Written so that what is no number is not proper either.
+        if not (places.max() < FARAWAY and 0 < np.abs(self.up).max() < np.inf):
+            return False
+        if not np.abs(self.position - self.focal_point).max() > 1 / FARAWAY:
+            return False
+        up, back = _direction(self.up), _direction(self.position - self.focal_point)
+        return bool(np.linalg.norm(np.cross(up, back)) > 1e-9)
 
     @property
     def frame(self) -> Matrix:

@@ -9,10 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pinwarp.gui.camera_pose import Matrix, Pose
-
-# Squares of what is beyond leave the range of numbers.
-FARAWAY = 1e100
+from pinwarp.gui.camera_pose import FARAWAY, Matrix, Pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,8 +51,7 @@ class Sight:
         parallel = bool(camera.GetParallelProjection())
         tangent = float(np.tan(np.radians(camera.GetViewAngle()) / 2))
         half_height = pose.parallel_scale if parallel else tangent
-        furthest = float(np.abs([pose.position, pose.focal_point]).max())
-        if not (pose.is_proper and 0 < half_height < FARAWAY and furthest < FARAWAY):
+        if not (pose.is_proper and 0 < half_height < FARAWAY):
             return None
         return cls(pose.position, pose.frame, half_height, aspect, parallel)
 
