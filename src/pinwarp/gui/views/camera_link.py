@@ -111,6 +111,9 @@ class CameraLink:
         self._poses[side] = pose
         other = self._poses[side.other]
         theirs = pose.mapped(relation)
+        if not theirs.is_proper:
+            # So far out that there is no such place.
+            return
         if self._mode is LinkMode.ROTATION:
             theirs = other.turned(theirs.frame)
         self._busy = True

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-import weakref
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum, auto
@@ -99,7 +98,7 @@ class Warps(Capability):
         self._asked: tuple[WarpInputs, bool] | None = None
         self.result: WarpResult | None = None
         self._figures_read_at = self._judged_at = 0.0
-        self._shown: weakref.WeakKeyDictionary[Mesh, OverlayWarp] = weakref.WeakKeyDictionary()
+        self._shaded: _Warps = (None, None)
         self._overlay: _Warps = (None, None)
         self._is_moving = False
         editor.session_changed.connect(self._ask)
@@ -157,15 +156,14 @@ class Warps(Capability):
         inputs = request.inputs
         solve = self.solver.preview if request.kind is _Kind.PREVIEW else self.solver.solve
         result = solve(inputs)
-        return _Shaded(
-            result,
-            request.kind,
-            (
-                self._shade(result, inputs.mesh, result.vertices),
-                self._shade(result, inputs.stand_in, result.stand_in),
-            ),
-            self._judge(result, request.kind),
+        before, before_coarse = self._shaded
+        warps = (
+            self._shade(result, inputs.mesh, result.vertices, before),
+            self._shade(result, inputs.stand_in, result.stand_in, before_coarse),
         )
+        # The mesh in full is as it was while only its stand-in moves.
+        self._shaded = (warps[0] or before, warps[1] or before_coarse)
+        return _Shaded(result, request.kind, warps, self._judge(result, request.kind))
 
     def _judge(self, result: WarpResult, kind: _Kind) -> Quality | None:
         """Judge the pairs along with the warp, so that all figures appear in one go."""
@@ -182,20 +180,19 @@ class Warps(Capability):
         result: WarpResult,
         mesh: Mesh | None,
         vertices: NDArray[np.float32] | None,
+        before: OverlayWarp | None,
     ) -> OverlayWarp | None:
         if mesh is None or vertices is None:
             return None
-        shown = self._shown.get(mesh)
-        if shown is not None and shown.vertices is vertices:
-            return shown
+        if before is not None and before.mesh is mesh and before.vertices is vertices:
+            return before
         normals = shading_normals(triangles(vertices, mesh.faces))
         # The warped surface shows its inside when it did so before, or when the warp mirrors it.
         whole = result.inputs.mesh
         affine = result.shown.affine[1:] if result.shown is not None else np.eye(3)
         mirrored = bool(np.linalg.det(affine) < 0)
         inside_out = (whole is not None and self._surfaces.of(whole).inside_out) != mirrored
-        self._shown[mesh] = OverlayWarp(mesh, vertices, normals, inside_out)
-        return self._shown[mesh]
+        return OverlayWarp(mesh, vertices, normals, inside_out)
 
     def _on_warp(self, shaded: _Shaded) -> None:
         result, before = shaded.result, self.result
