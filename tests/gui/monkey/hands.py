@@ -273,13 +273,13 @@ class Hands:
         at = QPoint(rng.randrange(widget.width()), rng.randrange(widget.height()))
         button = rng.choice(_BUTTONS)
         target = widget.viewport() if isinstance(widget, QAbstractItemView) else widget
-        self._click(target, at, button, rng.choice(_MODIFIERS), twice=rng.random() < 0.1)
+        name = widget.objectName() or widget.accessibleName() or getattr(widget, "text", str)()
         typed = ""
+        self._click(target, at, button, rng.choice(_MODIFIERS), twice=rng.random() < 0.1)
         if isinstance(widget, (QLineEdit, QAbstractSpinBox)):
             typed = rng.choice(TEXTS)
             type_text(widget.window().windowHandle(), typed)
             QTest.keyClick(widget, rng.choice((Qt.Key.Key_Return, Qt.Key.Key_Escape)))
-        name = widget.objectName() or widget.accessibleName() or getattr(widget, "text", str)()
         return f"{type(widget).__name__} {name!r} {at.toTuple()} {button.name} {typed!r}"
 
     def _slide(self, rng: random.Random) -> str:
