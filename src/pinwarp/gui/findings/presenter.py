@@ -103,13 +103,17 @@ class FindingsPresenter:
 
     def _show(self) -> None:
         session, quality, survey = self._editor.session, self._source.quality, self._maps.survey
-        key = (session.landmarks, session.unit, session.source, quality, survey)
+        # Not the survey itself: where its folds are the same, an older one would stay for ever.
+        folds = survey.findings if survey is not None else ()
+        judged = survey.result.inputs if survey is not None else None
+        places = (judged.source, judged.destination) if judged is not None else None
+        key = (session.landmarks, session.unit, session.source, quality, folds, places)
         if key == self._shown_for:
             return
         self._shown_for = key
         found = quality.findings_in(session) if quality is not None else ()
-        if survey is not None:
-            found += named_findings(survey.findings, survey.result.inputs, session)
+        if judged is not None:
+            found += named_findings(folds, judged, session)
         # A stable sort: folds come behind what causes them, what is only isolated last.
         found = tuple(sorted(found, key=lambda one: not one.finding.is_grave))
         self._found = tuple(one for one in found if one.finding.kind not in _TOLD_ELSEWHERE)

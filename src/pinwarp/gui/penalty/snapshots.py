@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 from qtpy.QtCore import QObject, QRect, QRectF, QSize, Qt
@@ -149,14 +151,15 @@ class Snapshots(QObject):
 
     def _snapshot(self, result: WarpResult) -> Snapshot:
         quality, flexibility = self._quality.quality, result.flexibility
-        left_out = None
+        left_out, mesh = None, result.inputs.mesh
         if quality is not None and quality.curve is not None and flexibility is not None:
             pairs = (quality.inputs.source, quality.inputs.destination)
             if pairs == (result.inputs.source, result.inputs.destination):
                 left_out, _ = quality.curve.at(flexibility)
         return Snapshot(
             picture=picture_of(self._canvas),
-            inputs=result.inputs,
+            inputs=replace(result.inputs, mesh=None, stand_in=None),
+            mesh=weakref.ref(mesh) if mesh is not None else None,
             flexibility=flexibility,
             leave_one_out=left_out if left_out is not None and np.isfinite(left_out) else None,
             residual=tidy_residual(result),

@@ -304,7 +304,7 @@ class Canvas(FastView):
         # Not its time stamp: the clipping range changes with every warp, and hides nothing.
         pose = (camera.GetPosition(), camera.GetFocalPoint(), camera.GetViewUp())
         lens = (camera.GetViewAngle(), camera.GetParallelScale(), camera.GetParallelProjection())
-        return (pose, lens, self.width(), self.height(), id(self.surface), share)
+        return (pose, lens, self.width(), self.height(), self.surface, share)
 
     @property
     def unit_per_pixel(self) -> float:

@@ -52,13 +52,17 @@ class _Request:
     result: WarpResult | None = None
 
 
+# In full, and as a stand-in.
+_Warps = tuple[OverlayWarp | None, OverlayWarp | None]
+
+
 @dataclass(frozen=True, eq=False)
 class _Shaded:
     """A result made ready for the screen in the worker: in full, and as a stand-in."""
 
     result: WarpResult
     kind: _Kind
-    warps: tuple[OverlayWarp | None, OverlayWarp | None] = (None, None)
+    warps: _Warps = (None, None)
     quality: Quality | None = None
 
 
@@ -101,7 +105,7 @@ class Presenter:
         self.result: WarpResult | None = None
         self._quality: Quality | None = None
         self._table_shown_at = self._judged_at = 0.0
-        self._shown: weakref.WeakKeyDictionary[Mesh, OverlayWarp] = weakref.WeakKeyDictionary()
+        self._shaded: _Warps = (None, None)
         self.ghosts: dict[Side, Ghost | None] = dict.fromkeys(Side)
         self._known_ghosts: dict[Side, Ghost | None] = {}
         self._ghost_keys: dict[Side, object] = {}
@@ -244,15 +248,14 @@ class Presenter:
         inputs = request.inputs
         solve = self.solver.preview if request.kind is _Kind.PREVIEW else self.solver.solve
         result = solve(inputs)
-        return _Shaded(
-            result,
-            request.kind,
-            (
-                self._shade(result, inputs.mesh, result.vertices),
-                self._shade(result, inputs.stand_in, result.stand_in),
-            ),
-            self._judge(result, request.kind),
+        before, before_coarse = self._shaded
+        warps = (
+            self._shade(result, inputs.mesh, result.vertices, before),
+            self._shade(result, inputs.stand_in, result.stand_in, before_coarse),
         )
+        # The mesh in full is as it was while only its stand-in moves.
+        self._shaded = (warps[0] or before, warps[1] or before_coarse)
+        return _Shaded(result, request.kind, warps, self._judge(result, request.kind))
 
     def _judge(self, result: WarpResult, kind: _Kind) -> Quality | None:
         """Judge the pairs along with the warp, so that all figures appear in one go."""
@@ -269,20 +272,19 @@ class Presenter:
         result: WarpResult,
         mesh: Mesh | None,
         vertices: NDArray[np.float32] | None,
+        before: OverlayWarp | None,
     ) -> OverlayWarp | None:
         if mesh is None or vertices is None:
             return None
-        shown = self._shown.get(mesh)
-        if shown is not None and shown.vertices is vertices:
-            return shown
+        if before is not None and before.mesh is mesh and before.vertices is vertices:
+            return before
         normals = shading_normals(triangles(vertices, mesh.faces))
         # The warped surface shows its inside when it did so before, or when the warp mirrors it.
         whole = self._surface(result.inputs.mesh)
         affine = result.shown.affine[1:] if result.shown is not None else np.eye(3)
         mirrored = bool(np.linalg.det(affine) < 0)
         inside_out = (whole is not None and whole.inside_out) != mirrored
-        self._shown[mesh] = OverlayWarp(mesh, vertices, normals, inside_out)
-        return self._shown[mesh]
+        return OverlayWarp(mesh, vertices, normals, inside_out)
 
     def _on_warp(self, shaded: _Shaded) -> None:
         if shaded.kind is _Kind.REFINE and (

@@ -297,7 +297,7 @@ class WarpSolver:
         return self._followed(inputs, last.spline, factor, mesh, moved[0])
 
     def _swept(self, inputs: WarpInputs, factor: SourceFactor, mesh: Mesh) -> NDArray[np.float32]:
-        key = (inputs.source, inputs.planar, inputs.destination, id(mesh))
+        key = (inputs.source, inputs.planar, inputs.destination, mesh)
         if self._sweep is None or self._sweep[0] != key:
             # Free the old basis before the new one is made: each may be 100 MB.
             self._sweep = self._influence = None
@@ -308,7 +308,7 @@ class WarpSolver:
     def _followed(
         self, inputs: WarpInputs, spline: Spline, factor: SourceFactor, mesh: Mesh, row: int
     ) -> NDArray[np.float32]:
-        key = (row, id(mesh))
+        key = (row, mesh)
         if self._influence is None or self._influence[0] != key:
             assert self._last is not None, "only a warp at rest is followed"
             self._sweep = self._influence = None
