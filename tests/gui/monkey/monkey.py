@@ -150,13 +150,24 @@ class Monkey:
         self._wait(
             lambda: self.window.is_settled and not self.answers.is_asked(),
             SETTLE_SECONDS,
-            "the window does not settle",
+            lambda: f"the window does not settle: {self._unsettled()}",
         )
 
-    def _wait(self, condition: Callable[[], bool], seconds: float, words: str) -> None:
+    def _unsettled(self) -> str:
+        window = self.window
+        parts = ("presenter", "quality", "tuning", "grid", "maps")
+        busy = [name for name in parts if not getattr(window, name).is_settled]
+        busy += [name for name in ("jobs", "stepped") if not getattr(window, name).is_idle]
+        asking = QApplication.activePopupWidget() or QApplication.activeModalWidget()
+        return f"{busy}, asked by {asking}"
+
+    def _wait(
+        self, condition: Callable[[], bool], seconds: float, words: Callable[[], str]
+    ) -> None:
         end = time.monotonic() + seconds
         while not condition():
-            self._require(time.monotonic() < end, f"{words} within {seconds} s")
+            if time.monotonic() > end:
+                self._require(False, f"{words()}, for {seconds} s")
             QTest.qWait(2)
 
     def _check(self, number: int) -> None:
@@ -206,7 +217,7 @@ class Monkey:
                 return wanted is None and not works
             return read_work(works[0]).record == wanted
 
-        self._wait(kept, JOURNAL_SECONDS, "the disk does not hold the session")
+        self._wait(kept, JOURNAL_SECONDS, lambda: "the disk does not hold the session")
 
     def _count(self, number: int, undo_steps: int) -> Figures:
         self._delete_deferred()
