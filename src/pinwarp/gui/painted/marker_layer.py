@@ -6,6 +6,7 @@ look the same on every graphics driver. What lies behind the surface is painted 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -36,6 +37,9 @@ from pinwarp.session.warp.ghost import Ghost
 
 if TYPE_CHECKING:
     from pinwarp.gui.views.canvas import Canvas
+
+
+_OUT_OF_SIGHT = "The bone is out of sight.\nHome looks at both bones as a whole."
 
 
 class MarkerLayer(QWidget):
@@ -136,9 +140,11 @@ class MarkerLayer(QWidget):
             self._paint_title(painter)
         if self.framed and self._canvas.bone is not None:
             length = self._canvas.unit_per_pixel
-            paint_scale_bar(painter, QRectF(self.rect()), length, self.unit)
-        if self.hint:
-            self._paint_hint(painter)
+            if 0 < length < math.inf:
+                paint_scale_bar(painter, QRectF(self.rect()), length, self.unit)
+        hint = self.hint or (_OUT_OF_SIGHT if self.framed and self.is_bone_lost else "")
+        if hint:
+            self._paint_hint(painter, hint)
         if self._suggestion is not None:
             self._paint_suggestion(painter, self._suggestion)
         if self.ghost is not None:
@@ -149,6 +155,11 @@ class MarkerLayer(QWidget):
         if self._badge:
             self._paint_badge(painter)
         painter.end()
+
+    @property
+    def is_bone_lost(self) -> bool:
+        """Whether there is a bone but nothing of it in the view."""
+        return self._canvas.bone is not None and not self._canvas.is_bone_seen
 
     def _paint_title(self, painter: QPainter) -> None:
         font = QFont(self.font())
@@ -165,14 +176,14 @@ class MarkerLayer(QWidget):
         )
         painter.drawText(QPointF(margin, margin + line * 1.9), caption)
 
-    def _paint_hint(self, painter: QPainter) -> None:
+    def _paint_hint(self, painter: QPainter, hint: str) -> None:
         plate = QRectF(0, 0, min(340, self.width() - 24), 120)
         plate.moveCenter(QPointF(self.width() / 2, self.height() / 2))
         painter.setPen(QPen(QColor(theme.QUIET_INK), 1.5, Qt.PenStyle.DashLine))
         painter.setBrush(QColor(255, 255, 255, 120))
         painter.drawRoundedRect(plate, 10, 10)
         painter.setPen(QColor(theme.INK))
-        painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, self.hint)
+        painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, hint)
 
     def _paint_badge(self, painter: QPainter) -> None:
         metrics, margin = painter.fontMetrics(), 10

@@ -74,16 +74,16 @@ class Pose:
     @property
     def is_proper(self) -> bool:
         """Whether it has a direction and an up across it: not so halfway through a change."""
-        back = self.position - self.focal_point
-        lengths = self.distance * float(np.linalg.norm(self.up))
-        return lengths > 0 and float(np.linalg.norm(np.cross(self.up, back))) > 1e-9 * lengths
+        with np.errstate(all="ignore"):
+            up, back = _direction(self.up), _direction(self.position - self.focal_point)
+            # Not so either where a number is not finite.
+            return bool(np.linalg.norm(np.cross(up, back)) > 1e-9)
 
     @property
     def frame(self) -> Matrix:
         """The (3, 3) rotation with columns right, up, and back towards the eye."""
-        back = (self.position - self.focal_point) / self.distance
-        right = np.cross(self.up, back)
-        right /= np.linalg.norm(right)
+        back = _direction(self.position - self.focal_point)
+        right = _direction(np.cross(_direction(self.up), back))
         return np.column_stack([right, np.cross(back, right), back])
 
     def is_at(self, other: Pose) -> bool:
@@ -114,6 +114,13 @@ class Pose:
         """Return the pose that looks at another place from another distance, from this side."""
         nearer = replace(self, parallel_scale=self.parallel_scale * distance / self.distance)
         return Pose.looking(nearer.frame, focal_point, distance, nearer.parallel_scale)
+
+
+def _direction(vector: Matrix) -> Matrix:
+    """Return a vector at length 1, however long or short it is."""
+    # The largest number first: squares of what is huge or tiny leave the range of numbers.
+    scaled = vector / np.abs(vector).max()
+    return np.asarray(scaled / np.linalg.norm(scaled))
 
 
 def relation_of(source: Pose, destination: Pose) -> Similarity:

@@ -113,6 +113,9 @@ class CameraLink:
         theirs = pose.mapped(relation)
         if self._mode is LinkMode.ROTATION:
             theirs = other.turned(theirs.frame)
+        if not theirs.is_proper:
+            # So far out that there is no such place.
+            return
         self._busy = True
         try:
             self._views[side.other].set_pose(theirs)

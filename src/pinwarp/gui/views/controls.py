@@ -202,6 +202,9 @@ class ViewControls(QObject):
         if not targets:
             self.fit_all()
             return
+        if not all(Pose.of(view.camera).is_proper for view in self._views.values()):
+            # There is no side to look from any more.
+            self.fit_all()
         rotation = self.link.source_to_destination()
         poses = {side: Pose.of(view.camera) for side, view in self._views.items()}
         if rotation is not None:
