@@ -255,6 +255,22 @@ def test_an_overlay_that_cannot_be_drawn_keeps_no_figures_from_being_shown(user,
     assert heard[-1].inputs.destination[0] == user.session.pairs[0].destination
 
 
+def test_a_picture_that_fails_half_painted_does_not_end_the_program(user, monkeypatch):
+    user.open_sample()
+    layer = user.window.viewports[SOURCE].layer
+
+    def fail(*_arguments):
+        raise ZeroDivisionError
+
+    with user.window.faults.taken_over(), monkeypatch.context() as patched:
+        patched.setattr(layer, "_paint_markers", fail)
+        for _ in range(3):
+            layer.repaint()
+    assert user.window.faults.count >= 3
+    assert len(user.window.faults.reports) == 1
+    layer.repaint()
+
+
 def test_a_slot_of_qt_and_a_thread_that_fail_are_told_too(user, state_folder):
     def fail(*_arguments):
         raise LookupError("nobody caught it")

@@ -11,6 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from pinwarp.gui.scene.camera_pose import Matrix, Pose
 
+# Squares of what is beyond leave the range of numbers.
+FARAWAY = 1e100
+
 
 @dataclass(frozen=True, eq=False)
 class Sight:
@@ -51,7 +54,8 @@ class Sight:
         parallel = bool(camera.GetParallelProjection())
         tangent = float(np.tan(np.radians(camera.GetViewAngle()) / 2))
         half_height = pose.parallel_scale if parallel else tangent
-        if not (pose.is_proper and 0 < half_height < np.inf):
+        furthest = float(np.abs([pose.position, pose.focal_point]).max())
+        if not (pose.is_proper and 0 < half_height < FARAWAY and furthest < FARAWAY):
             return None
         return cls(pose.position, pose.frame, half_height, aspect, parallel)
 

@@ -97,9 +97,8 @@ def picture_steps(order: PictureOrder, views: Mapping[Side, Canvas]) -> Steps:
         for copy in copies.values():
             copy.close()
     if not order.transparent:
-        painter = _below(image)
-        painter.fillRect(image.rect(), background(order.height))
-        painter.end()
+        with _below(image) as painter:
+            painter.fillRect(image.rect(), background(order.height))
     return image
 
 
@@ -112,11 +111,10 @@ def _below(image: QImage) -> QPainter:
 
 def _paint_below(image: QImage, place: QRect, tile: Tile) -> None:
     rows, columns = tile.pixels.shape[:2]
-    painter = _below(image)
-    painter.setClipRect(place)
     rendered = QImage(tile.pixels.data, columns, rows, 4 * columns, _FORMAT)
-    painter.drawImage(place.topLeft() + QPoint(tile.left, tile.top), rendered)
-    painter.end()
+    with _below(image) as painter:
+        painter.setClipRect(place)
+        painter.drawImage(place.topLeft() + QPoint(tile.left, tile.top), rendered)
 
 
 def background(height: int) -> QLinearGradient:
@@ -161,14 +159,13 @@ def _paint_landmarks(image: QImage, order: PictureOrder, view: Canvas, place: QR
                 for marker, hidden in zip(shown.markers, shown.hidden().tolist(), strict=True)
             )
         )
-    painter = QPainter(image)
-    painter.translate(place.topLeft())
-    painter.scale(scale, scale)
-    layer.render(painter, QPoint(), QRegion(), QWidget.RenderFlag(0))
-    legend = view.map_legend
-    if order.framed and legend.isVisible():
-        # As far from the right edge as in the window: colours without it say little.
-        painter.translate(layer.width() - (width - legend.x()), legend.y())
-        legend.render(painter, QPoint(), QRegion(), QWidget.RenderFlag(0))
-    painter.end()
+    with QPainter(image) as painter:
+        painter.translate(place.topLeft())
+        painter.scale(scale, scale)
+        layer.render(painter, QPoint(), QRegion(), QWidget.RenderFlag(0))
+        legend = view.map_legend
+        if order.framed and legend.isVisible():
+            # As far from the right edge as in the window: colours without it say little.
+            painter.translate(layer.width() - (width - legend.x()), legend.y())
+            legend.render(painter, QPoint(), QRegion(), QWidget.RenderFlag(0))
     layer.deleteLater()

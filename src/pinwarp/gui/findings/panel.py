@@ -188,18 +188,17 @@ class FindingRow(QFrame):
     def paintEvent(self, event: QPaintEvent) -> None:
         """Show which one is selected, and where the keys go."""
         super().paintEvent(event)
-        painter = QPainter(self)
-        if self._current:
-            shade = self.palette().color(QPalette.ColorRole.Highlight)
-            shade.setAlphaF(0.16)
-            painter.fillRect(self.rect(), shade)
-        if self.hasFocus():
-            option = QStyleOptionFocusRect()
-            option.initFrom(self)
-            option.rect = self.rect().adjusted(1, 1, -1, -1)
-            element = QStyle.PrimitiveElement.PE_FrameFocusRect
-            self.style().drawPrimitive(element, option, painter, self)
-        painter.end()
+        with QPainter(self) as painter:
+            if self._current:
+                shade = self.palette().color(QPalette.ColorRole.Highlight)
+                shade.setAlphaF(0.16)
+                painter.fillRect(self.rect(), shade)
+            if self.hasFocus():
+                option = QStyleOptionFocusRect()
+                option.initFrom(self)
+                option.rect = self.rect().adjusted(1, 1, -1, -1)
+                element = QStyle.PrimitiveElement.PE_FrameFocusRect
+                self.style().drawPrimitive(element, option, painter, self)
 
 
 class FindingsPanel(QWidget):

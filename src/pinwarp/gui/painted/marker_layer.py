@@ -134,27 +134,26 @@ class MarkerLayer(QWidget):
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Paint title, scale bar, landmarks, labels and the hint of an empty viewport."""
         self.painted_for = self._canvas.view_key()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        if self.framed:
-            self._paint_title(painter)
-        if self.framed and self._canvas.bone is not None:
-            length = self._canvas.unit_per_pixel
-            if 0 < length < math.inf:
-                paint_scale_bar(painter, QRectF(self.rect()), length, self.unit)
-        hint = self.hint or (_OUT_OF_SIGHT if self.framed and self.is_bone_lost else "")
-        if hint:
-            self._paint_hint(painter, hint)
-        if self._suggestion is not None:
-            self._paint_suggestion(painter, self._suggestion)
-        if self.ghost is not None:
-            self._paint_ghost(painter, self.ghost)
-        places, hidden = self.places(), self.hidden()
-        reached_from_right = self._paint_arrows(painter, hidden)
-        self._paint_markers(painter, places, hidden, reached_from_right)
-        if self._badge:
-            self._paint_badge(painter)
-        painter.end()
+        with QPainter(self) as painter:
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            if self.framed:
+                self._paint_title(painter)
+            if self.framed and self._canvas.bone is not None:
+                length = self._canvas.unit_per_pixel
+                if 0 < length < math.inf:
+                    paint_scale_bar(painter, QRectF(self.rect()), length, self.unit)
+            hint = self.hint or (_OUT_OF_SIGHT if self.framed and self.is_bone_lost else "")
+            if hint:
+                self._paint_hint(painter, hint)
+            if self._suggestion is not None:
+                self._paint_suggestion(painter, self._suggestion)
+            if self.ghost is not None:
+                self._paint_ghost(painter, self.ghost)
+            places, hidden = self.places(), self.hidden()
+            reached_from_right = self._paint_arrows(painter, hidden)
+            self._paint_markers(painter, places, hidden, reached_from_right)
+            if self._badge:
+                self._paint_badge(painter)
 
     @property
     def is_bone_lost(self) -> bool:

@@ -252,11 +252,10 @@ class LandmarkTable(QTableView):
         if self.order.rowCount():
             return
         hint = "No landmark matches\nthe filter" if self.order.is_filtered else _EMPTY_HINT
-        painter = QPainter(self.viewport())
-        painter.setPen(theme.quiet_text_colour())
-        room = self.viewport().rect().adjusted(12, 12, -12, -12)
-        painter.drawText(_upper_half(room), Qt.AlignmentFlag.AlignCenter, hint)
-        painter.end()
+        with QPainter(self.viewport()) as painter:
+            painter.setPen(theme.quiet_text_colour())
+            room = self.viewport().rect().adjusted(12, 12, -12, -12)
+            painter.drawText(_upper_half(room), Qt.AlignmentFlag.AlignCenter, hint)
 
 
 def _width(widget: QWidget, text: str) -> int:

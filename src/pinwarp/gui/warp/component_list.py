@@ -56,19 +56,18 @@ class ShareBar(QWidget):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Paint a faint track and the bar on it."""
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(Qt.PenStyle.NoPen)
-        track = QRectF(0, self.height() / 2 - 2, self.width(), 4)
-        faint = theme.text_colour()
-        faint.setAlphaF(0.1)
-        painter.setBrush(faint)
-        painter.drawRoundedRect(track, 2, 2)
-        if self.share > 0:
-            track.setWidth(max(4.0, self.share * track.width()))
-            painter.setBrush(QColor(theme.OVERLAY_COLOUR))
+        with QPainter(self) as painter:
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            painter.setPen(Qt.PenStyle.NoPen)
+            track = QRectF(0, self.height() / 2 - 2, self.width(), 4)
+            faint = theme.text_colour()
+            faint.setAlphaF(0.1)
+            painter.setBrush(faint)
             painter.drawRoundedRect(track, 2, 2)
-        painter.end()
+            if self.share > 0:
+                track.setWidth(max(4.0, self.share * track.width()))
+                painter.setBrush(QColor(theme.OVERLAY_COLOUR))
+                painter.drawRoundedRect(track, 2, 2)
 
 
 class ComponentRow(QWidget):
