@@ -18,9 +18,9 @@ from scipy.linalg import solve_triangular
 from scipy.linalg.lapack import dgeqrf
 from scipy.spatial.distance import cdist
 
-from pinwarp.core.errors import LandmarkError
+from pinwarp.core.errors import LandmarkCountError
 from pinwarp.core.findings import Finding, FindingKind
-from pinwarp.core.kernel import LARGEST_COORDINATE
+from pinwarp.core.positions import as_positions
 
 Matrix = NDArray[np.float64]
 
@@ -30,35 +30,6 @@ RANK_TOLERANCE = 1e-5
 PLANAR_TOLERANCE = 0.05
 # Landmarks closer than this share of the median spacing are reported.
 CLOSE_TOLERANCE = 1e-4
-
-
-def as_positions(values: ArrayLike, what: str) -> Matrix:
-    """Return a fresh (n, 3) float64 array of finite positions.
-
-    Parameters
-    ----------
-    values
-        (n, 3) numbers of any kind.
-    what
-        What the rows are called in a message, such as ``"source landmark"``.
-
-    Raises
-    ------
-    LandmarkError
-        When the shape is another or a row cannot be used; the message names the row.
-    """
-    try:
-        array = np.array(values, dtype=np.float64, order="C")
-    except (TypeError, ValueError) as error:
-        raise LandmarkError(f"The {what}s are not a table of numbers: {error}") from error
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise LandmarkError(f"The {what}s have the shape {array.shape} instead of (n, 3).")
-    usable = (np.abs(array) <= LARGEST_COORDINATE).all(axis=1)
-    if not usable.all():
-        row = int(np.flatnonzero(~usable)[0])
-        x, y, z = array[row].tolist()
-        raise LandmarkError(f"The {what} in row {row} is not usable: ({x}, {y}, {z}).")
-    return array
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +46,8 @@ class SourceFactor:
         Orthonormal directions that the landmarks span; r = 3 in general position.
     findings
         What is noteworthy about them.
+    duplicates
+        The places where several landmarks lie: the rows of each, ascending.
     """
 
     source: Matrix
@@ -82,7 +55,7 @@ class SourceFactor:
     scale: float
     directions: Matrix
     findings: tuple[Finding, ...]
-    duplicates: tuple[tuple[int, int], ...]
+    duplicates: tuple[tuple[int, ...], ...]
     reflectors: Matrix
     triangle: Matrix
     upper: Matrix
@@ -229,7 +202,7 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
     """
     source = as_positions(source, "source landmark")
     if not len(source):
-        raise LandmarkError("There are no landmark pairs: place at least one.")
+        raise LandmarkCountError("There are no landmark pairs: place at least one.")
     count = len(source)
     centre = source.mean(axis=0)
     offsets = source - centre
@@ -288,8 +261,8 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
 
 def _spacing(
     distances: Matrix, scale: float
-) -> tuple[tuple[Finding, ...], tuple[tuple[int, int], ...], bool]:
-    """Find landmarks at one place, and landmarks suspiciously close together."""
+) -> tuple[tuple[Finding, ...], tuple[tuple[int, ...], ...], bool]:
+    """Find places where several landmarks lie, and places suspiciously close together."""
     count = len(distances)
     if count < 2:
         return (), (), True
@@ -299,15 +272,32 @@ def _spacing(
     close = max(CLOSE_TOLERANCE * float(np.median(nearest)), same)
     if nearest.min() > close:
         return (), (), True
-    rows, others = np.nonzero(np.triu(distances <= close, 1))
-    pairs = [(int(i), int(j)) for i, j in zip(rows, others, strict=True)]
-    duplicates = tuple(pair for pair in pairs if distances[pair] <= same)
+    duplicates = _clusters(distances <= same)
+    # Of landmarks at one place the first speaks for all.
+    others = [row for place in duplicates for row in place[1:]]
+    near = distances <= close
+    near[others] = near[:, others] = False
     findings = tuple(
-        Finding(FindingKind.CLOSE, pair, float(distances[pair] * scale))
-        for pair in pairs
-        if pair not in duplicates
+        Finding(FindingKind.CLOSE, rows, float(distances[np.ix_(rows, rows)].min() * scale))
+        for rows in _clusters(near)
     )
     return findings, duplicates, False
+
+
+def _clusters(near: NDArray[np.bool_]) -> tuple[tuple[int, ...], ...]:
+    """Return the rows that hang together in a symmetric (n, n) relation; none stands alone."""
+    found = []
+    left = near.any(axis=1)
+    while left.any():
+        rows = last = np.flatnonzero(left)[:1]
+        left[last] = False
+        # Every row is looked at once: a thousand at one place are no more work than in a chain.
+        while len(last):
+            last = np.flatnonzero(near[last].any(axis=0) & left)
+            left[last] = False
+            rows = np.concatenate([rows, last])
+        found.append(tuple(sorted(rows.tolist())))
+    return tuple(found)
 
 
 def affine_coordinates(factor: SourceFactor, points: Matrix) -> Matrix:

@@ -9,6 +9,7 @@ penalty's sign is told in :mod:`pinwarp.tps3d`.
 from __future__ import annotations
 
 import math
+import reprlib
 import threading
 from dataclasses import dataclass
 from enum import StrEnum
@@ -17,12 +18,19 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solve_triangular
 from scipy.linalg.lapack import dposv
+from scipy.spatial.distance import pdist
 
 from pinwarp.core import kernel
 from pinwarp.core.alignment import fit_similarity
-from pinwarp.core.errors import LandmarkError, PenaltyError, SingularSystemError
-from pinwarp.core.factor import SourceFactor, as_positions, factorise, solve_upper
+from pinwarp.core.errors import (
+    LandmarkCountError,
+    PenaltyError,
+    PenaltyTypeError,
+    SingularSystemError,
+)
+from pinwarp.core.factor import SourceFactor, factorise, solve_upper
 from pinwarp.core.findings import Finding, FindingKind
+from pinwarp.core.positions import as_positions, is_real_number
 
 Matrix = NDArray[np.float64]
 
@@ -84,18 +92,55 @@ class Spline:
 
 
 def check_penalty(penalty: float) -> float:
-    """Return the penalty as a float; infinity, the affine fit, is allowed."""
-    value = float(penalty)
+    """Return the penalty as a float; infinity, the affine fit, is allowed.
+
+    Examples
+    --------
+    >>> check_penalty(np.float32(0.5)), check_penalty(math.inf)
+    (0.5, inf)
+    """
+    if isinstance(penalty, np.ndarray) and penalty.ndim == 0:
+        # An array without dimensions is a number; one that is masked stays what it is.
+        penalty = penalty[()]
+    if not is_real_number(penalty):
+        raise PenaltyTypeError(
+            f"The warping penalty is {reprlib.repr(penalty)}, which is not a number; "
+            "it must be 0 or more."
+        )
+    try:
+        value = float(penalty)
+    except OverflowError:
+        raise PenaltyError("The warping penalty is too large for a number.") from None
     if math.isnan(value) or value < 0:
         raise PenaltyError(f"The warping penalty is {value}; it must be 0 or more.")
     return value
+
+
+def check_convention(convention: PenaltyConvention | str) -> PenaltyConvention:
+    """Return the convention, which may be given by its value.
+
+    Examples
+    --------
+    >>> check_convention("opynsim") is PenaltyConvention.OPYNSIM
+    True
+    >>> check_convention("scipy")
+    Traceback (most recent call last):
+    pinwarp.core.errors.PenaltyError: The convention is 'scipy'; it must be 'regularising' or 'opynsim'.
+    """
+    try:
+        return PenaltyConvention(convention)
+    except ValueError:
+        known = " or ".join(repr(member.value) for member in PenaltyConvention)
+        raise PenaltyError(
+            f"The convention is {reprlib.repr(convention)}; it must be {known}."
+        ) from None
 
 
 def solve(
     factor: SourceFactor,
     destination: ArrayLike,
     penalty: float = 0.0,
-    convention: PenaltyConvention = PenaltyConvention.REGULARISING,
+    convention: PenaltyConvention | str = PenaltyConvention.REGULARISING,
 ) -> Spline:
     """Solve the spline that takes the factorised source landmarks to a destination.
 
@@ -108,7 +153,7 @@ def solve(
     penalty
         The warping penalty, a length in mesh units; infinity is the affine fit.
     convention
-        The equation that it enters.
+        The equation that it enters, or its value.
 
     Returns
     -------
@@ -119,7 +164,7 @@ def solve(
     LandmarkError
         When the counts differ or a row cannot be used.
     PenaltyError
-        When the penalty is negative or NaN.
+        When the penalty is negative or no number, or there is no such convention.
     SingularSystemError
         When an OPYNSIM penalty hits a pole.
 
@@ -132,7 +177,7 @@ def solve(
     True
     """
     displacement, target, linear = displacements(factor, destination)
-    penalty = check_penalty(penalty)
+    penalty, convention = check_penalty(penalty), check_convention(convention)
     weights, affine, findings = solve_values(factor, displacement, penalty, convention)
     linear = linear + affine[1:]
     coefficients = np.vstack([target + affine[0] - factor.centre @ linear, linear])
@@ -171,7 +216,7 @@ def displacements(factor: SourceFactor, destination: ArrayLike) -> tuple[Matrix,
     """
     destination = as_positions(destination, "destination landmark")
     if len(destination) != len(factor.source):
-        raise LandmarkError(
+        raise LandmarkCountError(
             f"There are {len(factor.source)} source landmarks but {len(destination)} destination "
             "landmarks: each needs its counterpart."
         )
@@ -283,10 +328,11 @@ def _conflicts(factor: SourceFactor, destination: Matrix, penalty: float) -> tup
     if penalty > 0:
         return ()
     found = []
-    for i, j in factor.duplicates:
-        apart = float(np.linalg.norm(destination[i] - destination[j]))
-        if apart > 1e-9 * float(np.abs(destination).max()):
-            found.append(Finding(FindingKind.CONFLICT, (i, j), apart))
+    rounding = 1e-9 * float(np.abs(destination).max())
+    for rows in factor.duplicates:
+        apart = float(pdist(destination[list(rows)]).max())
+        if apart > rounding:
+            found.append(Finding(FindingKind.CONFLICT, rows, apart))
     return tuple(found)
 
 

@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.distance import cdist
 
 from pinwarp.core.alignment import fit_similarity
-from pinwarp.core.factor import RANK_TOLERANCE, SourceFactor, as_positions
+from pinwarp.core.factor import RANK_TOLERANCE, SourceFactor
 from pinwarp.core.findings import Finding, FindingKind
+from pinwarp.core.positions import as_positions
 from pinwarp.core.quality import ROUNDING, LeaveOneOut, leave_one_out
 from pinwarp.core.spline import check_penalty, displacements, solve
 
