@@ -28,6 +28,8 @@ Matrix = NDArray[np.float64]
 RANK_TOLERANCE = 1e-5
 # ... and below this one the landmarks are called nearly planar.
 PLANAR_TOLERANCE = 0.05
+# Nor has any direction where all are so small.
+TINIEST = 1e-290
 # Landmarks closer than this share of the median spacing are reported.
 CLOSE_TOLERANCE = 1e-4
 
@@ -211,7 +213,8 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
     scale = (
         extent * float(np.sqrt(np.mean(np.sum((offsets / extent) ** 2, axis=1)))) if extent else 0
     )
-    at_one_place = scale <= 1e-12 * float(np.abs(centre).max())
+    # What is next to nothing has no reciprocal: it is taken for nothing.
+    at_one_place = scale <= max(1e-12 * float(np.abs(centre).max()), TINIEST)
     if at_one_place:
         scale = 1.0
     unit = np.zeros_like(offsets) if at_one_place else offsets / scale
@@ -275,7 +278,7 @@ def _spacing(
     duplicates = _clusters(distances <= same)
     # Of landmarks at one place the first speaks for all.
     others = [row for place in duplicates for row in place[1:]]
-    near = distances <= close
+    near = np.asarray(distances <= close)
     near[others] = near[:, others] = False
     findings = tuple(
         Finding(FindingKind.CLOSE, rows, float(distances[np.ix_(rows, rows)].min() * scale))
@@ -287,7 +290,7 @@ def _spacing(
 def _clusters(near: NDArray[np.bool_]) -> tuple[tuple[int, ...], ...]:
     """Return the rows that hang together in a symmetric (n, n) relation; none stands alone."""
     found = []
-    left = near.any(axis=1)
+    left = np.asarray(near.any(axis=1))
     while left.any():
         rows = last = np.flatnonzero(left)[:1]
         left[last] = False

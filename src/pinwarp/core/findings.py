@@ -37,12 +37,12 @@ class Finding:
     rows
         The pairs concerned, by their row in the solve.
     value
-        The figure that goes with it: for a conflict the largest distance on the destination,
-        for close landmarks the smallest on the source (mesh units), for nearly planar landmarks the ratio of the
-        smallest to the largest extent, for a pole its penalty (mesh units), for a fold the
-        number of its vertices. For inconsistent landmarks their distance on the source, for a
-        suspect its standardised leave-one-out error, for an isolated landmark the distance to
-        the nearest, for swapped or mirrored ones the share of the error that is left when that
+        The figure that goes with it: for a conflict the largest distance on the destination, for
+        close landmarks the smallest on the source (mesh units), for nearly planar landmarks the
+        ratio of the smallest to the largest extent, for a pole its penalty (mesh units), for a
+        fold the number of its vertices. For inconsistent landmarks their distance on the source,
+        for a suspect its standardised leave-one-out error, for an isolated landmark the distance
+        to the nearest, for swapped or mirrored ones the share of the error that is left when that
         is put right.
     others
         Further figures: for inconsistent landmarks their distance on the destination, for a

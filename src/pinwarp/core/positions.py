@@ -5,17 +5,20 @@ from __future__ import annotations
 import numbers
 from collections.abc import Sequence
 from decimal import Decimal
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pinwarp.core.errors import LandmarkError, LandmarkTypeError
+from pinwarp.core.errors import LandmarkError, LandmarkTypeError, RangeError
 
 Matrix = NDArray[np.float64]
 
 # Squares of larger coordinates overflow.
 LARGEST_COORDINATE = 1e150
+
+# For functions whose figures are looked at, and refused in words: overflow on the way is no news.
+quiet = np.errstate(over="ignore", invalid="ignore", divide="ignore")
 
 # What arrays of other kinds hold, by numpy's letter.
 _NO_NUMBERS = {
@@ -64,9 +67,10 @@ def as_positions(values: ArrayLike, what: str, *, fresh: bool = True) -> Matrix:
         # An empty list has no columns to count.
         return array.reshape(0, 3)
     if array.ndim != 2 or array.shape[1] != 3:
-        raise LandmarkTypeError(f"The {what}s have the shape {array.shape} instead of (n, 3).")
-    # NaN compares as false.
-    if not (np.abs(array) <= LARGEST_COORDINATE).all():
+        raise LandmarkTypeError(
+            f"The {_several(what)} have the shape {array.shape} instead of (n, 3)."
+        )
+    if not all_usable(array):
         row = first_row(~(np.abs(array) <= LARGEST_COORDINATE))
         x, y, z = array[row].tolist()
         raise LandmarkError(f"The {what} in row {row} is not usable: ({x}, {y}, {z}).")
@@ -84,6 +88,33 @@ def as_numbers(values: ArrayLike, what: str, *, fresh: bool = True) -> Matrix:
         return np.ascontiguousarray(values, dtype=np.float64)
 
 
+def in_range(warped: Matrix, points: Matrix) -> Matrix:
+    """Return warped points; RangeError where one is so far away that its square overflows.
+
+    Parameters
+    ----------
+    warped
+        (m, 3) where the points went.
+    points
+        (m, 3) where they came from, to say it.
+    """
+    if not all_usable(warped):
+        x, y, z = points[first_row(~(np.abs(warped) <= LARGEST_COORDINATE))].tolist()
+        raise RangeError(
+            f"The warp leaves the range of numbers at ({x:.6g}, {y:.6g}, {z:.6g}): check the unit, "
+            "and the landmarks for one that is far from all others."
+        )
+    return warped
+
+
+def all_usable(array: Matrix) -> bool:
+    """Whether every coordinate is finite and has a square."""
+    # NaN is the minimum of all that hold one, and compares as false.
+    return not array.size or bool(
+        array.min() >= -LARGEST_COORDINATE and array.max() <= LARGEST_COORDINATE
+    )
+
+
 def first_row(wrong: NDArray[np.bool_]) -> int:
     """Return the first row in which anything is wrong.
 
@@ -95,6 +126,10 @@ def first_row(wrong: NDArray[np.bool_]) -> int:
     return int(np.flatnonzero(wrong.reshape(len(wrong), -1).any(axis=1))[0])
 
 
+def _several(what: str) -> str:
+    return "vertices" if what == "vertex" else f"{what}s"
+
+
 def _plain(values: Any, what: str) -> NDArray[Any]:
     """Return an array of numbers; LandmarkError where anything else is among them."""
     _refuse_masked(values, what)
@@ -103,17 +138,22 @@ def _plain(values: Any, what: str) -> NDArray[Any]:
     try:
         array = np.asarray(values)
     except (TypeError, ValueError, OverflowError) as error:
-        raise LandmarkTypeError(f"The {what}s are not a table of numbers: {error}") from error
+        raise LandmarkTypeError(
+            f"The {_several(what)} are not a table of numbers: {error}"
+        ) from error
     if array.dtype.kind == "O":
         return _numbers_among_objects(array, values, what)
     if array.dtype.kind in _NO_NUMBERS:
         kind = _NO_NUMBERS[array.dtype.kind]
-        raise LandmarkTypeError(f"The {what}s are not a table of numbers: they are {kind}.")
+        raise LandmarkTypeError(
+            f"The {_several(what)} are not a table of numbers: they are {kind}."
+        )
     return array
 
 
 def _refuse_masked(values: Any, what: str) -> None:
     """Refuse values that are hidden: numpy would take what lies below the mask."""
+    rows: Any
     if isinstance(values, np.ma.MaskedArray):
         rows = values if values.ndim and _is_masked(values) else [values]
     else:
@@ -139,7 +179,7 @@ def _refuse_ragged(rows: Sequence[Any], what: str) -> None:
             lengths = {len(other) for other in rows if isinstance(other, Sequence)}
             if len(lengths) > 1:
                 raise LandmarkTypeError(
-                    f"The {what}s are not a table of numbers: row {number} has {len(row)} "
+                    f"The {_several(what)} are not a table of numbers: row {number} has {len(row)} "
                     "instead of 3."
                 )
 
@@ -147,20 +187,20 @@ def _refuse_ragged(rows: Sequence[Any], what: str) -> None:
 def _numbers_among_objects(array: NDArray[Any], values: Any, what: str) -> NDArray[Any]:
     if array.ndim == 0:
         raise LandmarkTypeError(
-            f"The {what}s are not a table of numbers but one {type(values).__name__}."
+            f"The {_several(what)} are not a table of numbers but one {type(values).__name__}."
         )
     for place, value in np.ndenumerate(array):
         if is_real_number(value):
             continue
         shown = repr(value) if len(repr(value)) < 40 else type(value).__name__
         raise LandmarkTypeError(
-            f"The {what}s are not a table of numbers: row {place[0]} holds {shown}."
+            f"The {_several(what)} are not a table of numbers: row {place[0]} holds {shown}."
         )
     # An integer beyond the doubles is as infinite to them.
     return np.array([_as_float(value) for value in array.flat]).reshape(array.shape)
 
 
-def is_real_number(value: object) -> bool:
+def is_real_number(value: object) -> TypeGuard[float]:
     """Whether something is one real number: 2, 0.5, ``numpy.float32(0.5)``, a fraction, a decimal.
 
     Truth values count as none, nor does text that could be read as a number.

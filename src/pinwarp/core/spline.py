@@ -30,7 +30,7 @@ from pinwarp.core.errors import (
 )
 from pinwarp.core.factor import SourceFactor, factorise, solve_upper
 from pinwarp.core.findings import Finding, FindingKind
-from pinwarp.core.positions import as_positions, is_real_number
+from pinwarp.core.positions import as_positions, in_range, is_real_number, quiet
 
 Matrix = NDArray[np.float64]
 
@@ -86,12 +86,15 @@ class Spline:
     convention: PenaltyConvention
     findings: tuple[Finding, ...] = ()
 
+    @quiet
     def evaluate(self, points: ArrayLike) -> Matrix:
-        """Warp (m, 3) points in double precision."""
-        return kernel.evaluate(self.source, self.weights, self.affine, points)
+        """Warp (m, 3) points in double precision; RangeError where no number can hold one."""
+        points = kernel.as_points(points)
+        warped = kernel.evaluate(self.source, self.weights, self.affine, points)
+        return in_range(warped, points)
 
 
-def check_penalty(penalty: float) -> float:
+def check_penalty(penalty: object) -> float:
     """Return the penalty as a float; infinity, the affine fit, is allowed.
 
     Examples
@@ -123,9 +126,9 @@ def check_convention(convention: PenaltyConvention | str) -> PenaltyConvention:
     --------
     >>> check_convention("opynsim") is PenaltyConvention.OPYNSIM
     True
-    >>> check_convention("scipy")
+    >>> check_convention("published")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    pinwarp.core.errors.PenaltyError: The convention is 'scipy'; it must be 'regularising' or 'opynsim'.
+    pinwarp.core.errors.PenaltyError: The convention is 'published'; it must be ...
     """
     try:
         return PenaltyConvention(convention)
@@ -136,6 +139,7 @@ def check_convention(convention: PenaltyConvention | str) -> PenaltyConvention:
         ) from None
 
 
+@quiet
 def solve(
     factor: SourceFactor,
     destination: ArrayLike,
@@ -231,6 +235,7 @@ def displacements(factor: SourceFactor, destination: ArrayLike) -> tuple[Matrix,
     return displacement, target, linear
 
 
+@quiet
 def solve_values(
     factor: SourceFactor,
     values: Matrix,
