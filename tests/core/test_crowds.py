@@ -111,3 +111,26 @@ def test_a_crowd_that_agrees_is_nothing_to_say():
     with warnings.catch_warnings():
         warnings.simplefilter("error", ConflictingLandmarksWarning)
         solve_coefficients(source, 2 * source)
+
+
+@pytest.mark.parametrize("apart", [0.0, 1.0])
+def test_places_solved_once_each_are_what_the_eigenvalues_say(apart):
+    rng = np.random.default_rng(5)
+    places = rng.normal(size=(20, 3)) + 7
+    source = places[np.concatenate([np.arange(20), rng.integers(0, 20, 30)])]
+    destination = source @ rng.normal(size=(3, 3)) + np.sin(source)
+    destination += apart * rng.normal(size=source.shape)
+    quick, thorough = factorise(source), factorise(source)
+    _ = thorough.modes
+    a, b = solve(quick, destination), solve(thorough, destination)
+    assert not quick.has_modes
+    assert np.allclose(a.weights, b.weights, atol=1e-9)
+    assert np.allclose(a.affine, b.affine, atol=1e-8)
+    assert a.findings == b.findings
+
+
+def test_a_thousand_at_one_place_need_no_eigenvalues():
+    for source in (crowd(1000)[0], np.ones((1000, 3)), np.repeat(crowd(1)[0], 200, axis=0)):
+        factor = factorise(source)
+        solve(factor, np.random.default_rng(0).normal(size=source.shape))
+        assert not factor.has_modes

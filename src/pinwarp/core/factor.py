@@ -83,6 +83,19 @@ class SourceFactor:
         _, vectors = self.modes
         return self.rotate_back(np.vstack([np.zeros((self.rank + 1, len(vectors))), vectors]))
 
+    @cached_property
+    def place_of(self) -> NDArray[np.intp]:
+        """The number of each landmark's place: those of duplicates are the same."""
+        first = np.arange(len(self.source))
+        for rows in self.duplicates:
+            first[list(rows)] = rows[0]
+        return np.asarray(np.unique(first, return_inverse=True)[1])
+
+    @cached_property
+    def places(self) -> SourceFactor:
+        """The same with each place once."""
+        return factorise(self.source[np.unique(self.place_of, return_index=True)[1]])
+
     def certainty(self, penalties: Matrix) -> tuple[Matrix, Matrix]:
         """Return ``(stiffest + s) / (lambda + s)`` of every mode for (k,) penalties.
 

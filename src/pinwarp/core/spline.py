@@ -258,11 +258,30 @@ def solve_values(
     findings
         What the solve noticed.
     """
+    if penalty == 0 and factor.duplicates and not factor.has_modes:
+        places = factor.places
+        if places.rank == factor.rank == 3:
+            return _solve_places(factor, places, values)
     columns = factor.rank + 1
     rotated = factor.rotate(values / factor.scale)
     gamma, findings = _bend(factor, rotated[columns:], penalty, convention)
     weights, affine = back_to_landmarks(factor, gamma, rotated[:columns])
     return weights, affine, findings
+
+
+def _solve_places(
+    factor: SourceFactor, places: SourceFactor, values: Matrix
+) -> tuple[Matrix, Matrix, tuple[Finding, ...]]:
+    """Solve at penalty 0 with each place once: what the eigenvalues would say, but sooner.
+
+    Landmarks at one place can only be met in the middle, and share its weight.
+    """
+    place_of, shares = factor.place_of, np.bincount(factor.place_of)[:, None]
+    means = np.zeros((len(shares), values.shape[1]))
+    np.add.at(means, place_of, values)
+    weights, affine, findings = solve_values(places, means / shares, 0.0)
+    affine[0] += (factor.centre - places.centre) @ affine[1:]
+    return (weights / shares)[place_of], affine, findings
 
 
 def back_to_landmarks(
@@ -279,7 +298,8 @@ def _bend(
     factor: SourceFactor, values: Matrix, penalty: float, convention: PenaltyConvention
 ) -> tuple[Matrix, tuple[Finding, ...]]:
     """Solve ``(N +- penalty I) gamma = values``, the part of the system beyond the affine one."""
-    if not len(values) or math.isinf(penalty):
+    at_one_place = factor.rank == 0 and penalty == 0
+    if not len(values) or math.isinf(penalty) or at_one_place:
         return np.zeros_like(values), ()
     regularising = convention is PenaltyConvention.REGULARISING or penalty == 0
     if regularising and factor.well_spaced and not factor.has_modes:
