@@ -93,11 +93,13 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pinwarp.core import small
 from pinwarp.core.errors import (
     ConflictingLandmarksWarning,
     LandmarkCountError,
@@ -200,6 +202,10 @@ class TPSCoefficients3D:
         object.__setattr__(self, "warping_penalty", check_penalty(self.warping_penalty))
         object.__setattr__(self, "convention", check_convention(self.convention))
 
+    @cached_property
+    def _table(self) -> NDArray[np.float64]:
+        return small.table_of(self._spline)
+
     @property
     def _spline(self) -> Spline:
         affine = np.vstack([self.a1, self.a2, self.a3, self.a4])
@@ -231,10 +237,11 @@ class TPSCoefficients3D:
         >>> moved.warp_point([10, 10, 10]).tolist()
         [11.0, 12.0, 13.0]
         """
-        array = as_numbers(point, "point", fresh=False)
+        array = point if small.is_point(point) else as_numbers(point, "point", fresh=False)
         if array.shape != (3,):
             raise LandmarkTypeError(f"The point has the shape {array.shape} instead of (3,).")
-        return np.asarray(self.warp_points(array[None])[0])
+        warped = small.warp_point(self._table, array)
+        return np.array(self.warp_points(array[None])[0]) if warped is None else warped
 
     def warp_points(self, points: ArrayLike) -> NDArray[np.float64]:
         """Warp (m, 3) points in double precision; see :meth:`warp_point`.
@@ -327,14 +334,18 @@ def solve_coefficients(
     >>> bool(abs(affine_fit.weights).max() == 0)
     True
     """
-    spline = solve(factorise(source_landmarks), destination_landmarks, warping_penalty, convention)
+    penalty, kind = check_penalty(warping_penalty), check_convention(convention)
+    # One pass where there is nothing to refuse: numpy takes longer to be called than to reckon.
+    spline = small.solve_ordinary(source_landmarks, destination_landmarks, penalty, kind)
+    if spline is None:
+        spline = solve(factorise(source_landmarks), destination_landmarks, penalty, kind)
     for finding in spline.findings:
         warnings.warn(finding.describe(), _WARNINGS[finding.kind], stacklevel=2)
     return coefficients_of(spline)
 
 
 def coefficients_of(spline: Spline) -> TPSCoefficients3D:
-    """Return a solved spline's coefficients under their documented names.
+    """Return a solved spline's coefficients under their documented names; both share the arrays.
 
     Examples
     --------
@@ -342,7 +353,19 @@ def coefficients_of(spline: Spline) -> TPSCoefficients3D:
     >>> coefficients_of(identity()).a2.tolist()
     [1.0, 0.0, 0.0]
     """
+    made = object.__new__(TPSCoefficients3D)
     a1, a2, a3, a4 = spline.affine
-    return TPSCoefficients3D(
-        a1, a2, a3, a4, spline.weights, spline.source, spline.penalty, spline.convention
+    spline.weights.setflags(write=False)
+    spline.source.setflags(write=False)
+    # What was solved needs no second look, which would take longer than a small solve.
+    made.__dict__.update(
+        a1=a1,
+        a2=a2,
+        a3=a3,
+        a4=a4,
+        weights=spline.weights,
+        source_landmarks=spline.source,
+        warping_penalty=spline.penalty,
+        convention=spline.convention,
     )
+    return made

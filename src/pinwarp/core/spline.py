@@ -102,6 +102,8 @@ def check_penalty(penalty: object) -> float:
     >>> check_penalty(np.float32(0.5)), check_penalty(math.inf)
     (0.5, inf)
     """
+    if type(penalty) is float and penalty >= 0:
+        return penalty
     if isinstance(penalty, np.ndarray) and penalty.ndim == 0:
         # An array without dimensions is a number; one that is masked stays what it is.
         penalty = penalty[()]
