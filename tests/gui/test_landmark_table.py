@@ -344,6 +344,21 @@ def test_escape_gives_a_refused_name_up(four):
     assert four.user.editor.undo_label is None
 
 
+def test_the_key_for_renaming_leaves_a_name_that_is_being_typed_alone(four):
+    four.click("a9")
+    four.press(Qt.Key.Key_F2)
+    line = four.table.findChild(QLineEdit)
+    line.selectAll()
+    QTest.keyClicks(line, "ape")
+    four.press(Qt.Key.Key_F2)
+    assert four.table.findChild(QLineEdit) is line
+    assert four.user.editor.undo_label is None
+    QTest.keyClicks(line, "x")
+    QTest.keyClick(line, Qt.Key.Key_Return)
+    four.user.settle()
+    assert four.shown() == ["b", "a10", "apex", "c"]
+
+
 def test_many_are_renamed_by_a_pattern(four):
     four.click("b")
     four.click("a9", modifier=SHIFT)

@@ -32,7 +32,9 @@ def play(nothing_leaks, qtbot, tmp_path, state_folder):
             # Small: every pixel is drawn by the processor here.
             window.resize(620, 460)
             begin(window)
-            qtbot.waitUntil(lambda: window.is_settled, timeout=60_000)
+            qtbot.waitUntil(lambda: window.is_settled, timeout=180_000)
+            # What was opened step by step is where the monkey begins.
+            window.editor.replace_all(window.editor.committed, None)
             return window
 
         monkeys.append(Monkey(open_one, state_folder, tmp_path / "monkey", seed))

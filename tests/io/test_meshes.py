@@ -4,6 +4,8 @@ import base64
 import hashlib
 import itertools
 import struct
+import subprocess
+import sys
 import tracemalloc
 from pathlib import Path
 from random import Random
@@ -164,6 +166,35 @@ def test_both_layouts_of_legacy_vtk_are_read(tmp_path: Path, version: int, binar
 
 
 # Details of the formats
+
+
+TOO_LARGE = """
+import resource, sys
+from pathlib import Path
+from pinwarp.io.meshes import read_mesh, write_mesh
+from pinwarp.io.samples import assets_folder
+
+mesh = read_mesh(assets_folder() / "femur_generic.ply").mesh
+resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+try:
+    write_mesh(Path(sys.argv[1]), mesh)
+except OSError as error:
+    print(error.strerror)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows limits no file by a process")
+@pytest.mark.parametrize("suffix", MESH_SUFFIXES)
+def test_where_there_is_no_room_for_a_mesh_only_the_writing_fails(tmp_path: Path, suffix: str):
+    # In a process of its own: VTK's legacy writer, left to write by itself, ends it.
+    path = tmp_path / f"bone{suffix}"
+    path.write_text("what was there")
+    done = subprocess.run(
+        [sys.executable, "-c", TOO_LARGE, str(path)], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "File too large\n", "")
+    assert path.read_text() == "what was there"
+    assert list(tmp_path.iterdir()) == [path]
 
 
 @pytest.mark.parametrize("suffix", [".vtp", ".vtk"])

@@ -4,8 +4,12 @@
 
     PinwarpError
     ├── LandmarkError (ValueError)      coordinates, names or counts that cannot be used
+    │   ├── LandmarkTypeError (TypeError)       not a table of three numbers a row
+    │   └── LandmarkCountError (RuntimeError)   none, or a landmark without its counterpart
     ├── PenaltyError (ValueError)       a penalty that is negative or NaN
-    ├── SingularSystemError             the equations have no usable solution
+    │   └── PenaltyTypeError (TypeError)        not a number at all
+    ├── SingularSystemError (RuntimeError)      the equations have no usable solution
+    ├── RangeError (ArithmeticError)    a warp that no number can hold
     ├── MeshError (ValueError)          not a surface, or not a usable one
     └── FileFormatError (ValueError)    a file that cannot be read; names file and line
         └── NewerFileError              written by a newer pinwarp
@@ -39,12 +43,28 @@ class LandmarkError(PinwarpError, ValueError):
     """Landmarks that cannot be used; the message names the row or the landmark."""
 
 
+class LandmarkTypeError(LandmarkError, TypeError):
+    """Landmarks that are no table of three real numbers a row."""
+
+
+class LandmarkCountError(LandmarkError, RuntimeError):
+    """No landmarks, or not as many on either side."""
+
+
 class PenaltyError(PinwarpError, ValueError):
-    """A warping penalty that is negative or not a number."""
+    """A warping penalty that is negative or not a number, or a convention that is none."""
 
 
-class SingularSystemError(PinwarpError):
+class PenaltyTypeError(PenaltyError, TypeError):
+    """A warping penalty that is no real number: text, a list, a truth value."""
+
+
+class SingularSystemError(PinwarpError, RuntimeError):
     """The spline's equations have no usable solution at this penalty."""
+
+
+class RangeError(PinwarpError, ArithmeticError):
+    """A warp that leaves the range of numbers; the message says where."""
 
 
 class MeshError(PinwarpError, ValueError):

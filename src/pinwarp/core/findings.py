@@ -7,6 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
+# Of more landmarks than this a sentence names the first, and says how many more there are.
+MOST_NAMED = 4
+
 
 class FindingKind(StrEnum):
     """What was noticed."""
@@ -34,12 +37,12 @@ class Finding:
     rows
         The pairs concerned, by their row in the solve.
     value
-        The figure that goes with it: for a conflict or close landmarks the distance on the
-        destination or source (mesh units), for nearly planar landmarks the ratio of the
-        smallest to the largest extent, for a pole its penalty (mesh units), for a fold the
-        number of its vertices. For inconsistent landmarks their distance on the source, for a
-        suspect its standardised leave-one-out error, for an isolated landmark the distance to
-        the nearest, for swapped or mirrored ones the share of the error that is left when that
+        The figure that goes with it: for a conflict the largest distance on the destination, for
+        close landmarks the smallest on the source (mesh units), for nearly planar landmarks the
+        ratio of the smallest to the largest extent, for a pole its penalty (mesh units), for a
+        fold the number of its vertices. For inconsistent landmarks their distance on the source,
+        for a suspect its standardised leave-one-out error, for an isolated landmark the distance
+        to the nearest, for swapped or mirrored ones the share of the error that is left when that
         is put right.
     others
         Further figures: for inconsistent landmarks their distance on the destination, for a
@@ -76,12 +79,14 @@ class Finding:
         other = f"{self.others[0]:.3g} {unit}".rstrip() if self.others else ""
         match self.kind:
             case FindingKind.CONFLICT:
+                apart = length if len(self.rows) == 2 else f"up to {length}"
                 return (
-                    f"{who} lie at the same place on the source but {length} apart "
+                    f"{who} lie at the same place on the source but {apart} apart "
                     "on the destination."
                 )
             case FindingKind.CLOSE:
-                return f"{who} are only {length} apart on the source: the warp bends hard there."
+                apart = length if len(self.rows) == 2 else f"{length} or little more"
+                return f"{who} are only {apart} apart on the source: the warp bends hard there."
             case FindingKind.NEARLY_PLANAR:
                 return (
                     "The source landmarks lie nearly in one plane: "
@@ -123,7 +128,9 @@ class Finding:
 
 
 def _listed(words: Sequence[str]) -> str:
-    """Say one or several."""
+    """Say one or several; of many the first, and how many more."""
+    if len(words) > MOST_NAMED:
+        words = [*words[: MOST_NAMED - 1], f"{len(words) - MOST_NAMED + 1} more"]
     return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
 
 

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.distance import cdist
 
 from pinwarp.core.blocks import BLOCK, LARGEST_FIELD
-from pinwarp.core.errors import LandmarkError
+from pinwarp.core.positions import as_positions
 
 Matrix = NDArray[np.float64]
 Single = NDArray[np.float32]
@@ -28,8 +28,6 @@ Single = NDArray[np.float32]
 WORTH_COMPILING = 300_000
 # Distances held at once by the numpy path: 32 MB.
 CHUNK = 4_000_000
-# Squares of larger coordinates overflow.
-LARGEST_COORDINATE = 1e150
 # Below this many sums (about a millisecond) a second thread costs more to wake than it saves.
 WORTH_THREADS = 4_000_000
 
@@ -176,14 +174,7 @@ def evaluate_jacobian(
 
 def as_points(points: ArrayLike) -> Matrix:
     """Return the points as (m, 3) float64; LandmarkError where that cannot be."""
-    points = np.ascontiguousarray(points, dtype=np.float64)
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise LandmarkError(f"The points have the shape {points.shape} instead of (m, 3).")
-    usable = np.abs(points) <= LARGEST_COORDINATE
-    if not usable.all():
-        row = int(np.flatnonzero(~usable.all(axis=1))[0])
-        raise LandmarkError(f"The point in row {row} is not usable: {points[row].tolist()}.")
-    return points
+    return as_positions(points, "point", fresh=False)
 
 
 def about(affine: Matrix, centre: Matrix) -> Matrix:

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.distance import cdist
 
 from pinwarp.core.factor import RANK_TOLERANCE, SourceFactor
+from pinwarp.core.positions import quiet
 from pinwarp.core.spline import Spline, check_penalty, displacements
 
 Matrix = NDArray[np.float64]
@@ -59,6 +60,7 @@ class LeaveOneOut:
     rms: float
 
 
+@quiet
 def leave_one_out(
     factor: SourceFactor, destination: ArrayLike, penalty: float = 0.0
 ) -> LeaveOneOut:
@@ -195,6 +197,7 @@ class PenaltyCurve:
         )
 
 
+@quiet
 def penalty_curve(
     factor: SourceFactor, destination: ArrayLike, penalties: ArrayLike | None = None
 ) -> PenaltyCurve:
@@ -262,6 +265,7 @@ def _suggested(penalties: Matrix, errors: Matrix) -> float | None:
     return float(penalties[best]) if worthwhile else None
 
 
+@quiet
 def bending_energy(spline: Spline) -> Matrix:
     """Return how much each coordinate of the warp bends, up to the factor 8 pi.
 

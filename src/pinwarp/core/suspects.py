@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.distance import cdist
 
 from pinwarp.core.alignment import fit_similarity
-from pinwarp.core.factor import RANK_TOLERANCE, SourceFactor, as_positions
+from pinwarp.core.factor import RANK_TOLERANCE, SourceFactor
 from pinwarp.core.findings import Finding, FindingKind
+from pinwarp.core.positions import as_positions, quiet
 from pinwarp.core.quality import ROUNDING, LeaveOneOut, leave_one_out
 from pinwarp.core.spline import check_penalty, displacements, solve
 
@@ -36,6 +37,7 @@ SHARPLY = 0.7
 MIRRORED = 0.5
 
 
+@quiet
 def suspects(
     factor: SourceFactor,
     destination: ArrayLike,
@@ -119,6 +121,7 @@ def _torn(fitted: Matrix, ends: Matrix) -> Matrix:
     return torn
 
 
+@quiet
 def swapped_pairs(
     factor: SourceFactor, destination: ArrayLike, penalty: float = 0.0
 ) -> tuple[Finding, ...]:
@@ -185,6 +188,7 @@ def _exchange(pulls: Matrix, target: Matrix) -> Matrix:
     return np.asarray(2 * (across + across.T - own[:, None] - own))
 
 
+@quiet
 def is_mirrored(source: ArrayLike, destination: ArrayLike) -> bool:
     """Whether a reflection fits the pairs far better than a rotation: left and right bones.
 

@@ -245,6 +245,11 @@ class Editor:
         self._history.mark_saved()
         self.saved.emit()
 
+    def mark_unsaved(self) -> None:
+        """Remember that no file holds the session: the one that did is gone."""
+        self._history.mark_saved(saved=False)
+        self.saved.emit()
+
     def select(self, *names: str, side: Side | None = None) -> None:
         """Select landmarks; without a side the previous one stays."""
         selection = Selection(names, side or self.selection.side)

@@ -88,6 +88,11 @@ class Hands:
 
     def act(self, rng: random.Random) -> str:
         """Do something, and say what."""
+        window = self._window()
+        if QApplication.activeWindow() is not window and rng.random() < 0.7:
+            # Without a window manager nobody gives the keyboard back after a dialog or a dock.
+            window.activateWindow()
+            QTest.qWaitForWindowActive(window, 1000)
         (thing,) = rng.choices(self._things, self._weights)
         return f"{thing.__name__.strip('_')} {thing(rng)}"
 
@@ -225,6 +230,11 @@ class Hands:
 
     def _cell(self, rng: random.Random) -> str:
         table = self._window().table
+        if not table.isVisible():
+            dock = self._window().findChild(QDockWidget, "landmarks")
+            dock.show()
+            dock.raise_()
+            QApplication.processEvents()
         if not table.isVisible() or not table.model().rowCount():
             return "no table"
         columns = [c for c in range(table.model().columnCount()) if not table.isColumnHidden(c)]
@@ -273,13 +283,13 @@ class Hands:
         at = QPoint(rng.randrange(widget.width()), rng.randrange(widget.height()))
         button = rng.choice(_BUTTONS)
         target = widget.viewport() if isinstance(widget, QAbstractItemView) else widget
-        self._click(target, at, button, rng.choice(_MODIFIERS), twice=rng.random() < 0.1)
+        name = widget.objectName() or widget.accessibleName() or getattr(widget, "text", str)()
         typed = ""
+        self._click(target, at, button, rng.choice(_MODIFIERS), twice=rng.random() < 0.1)
         if isinstance(widget, (QLineEdit, QAbstractSpinBox)):
             typed = rng.choice(TEXTS)
             type_text(widget.window().windowHandle(), typed)
             QTest.keyClick(widget, rng.choice((Qt.Key.Key_Return, Qt.Key.Key_Escape)))
-        name = widget.objectName() or widget.accessibleName() or getattr(widget, "text", str)()
         return f"{type(widget).__name__} {name!r} {at.toTuple()} {button.name} {typed!r}"
 
     def _slide(self, rng: random.Random) -> str:

@@ -29,8 +29,9 @@ from pinwarp.session.session import Session, to_record
 
 CHECK_EVERY = 100
 LAST = 30
-SETTLE_SECONDS = 60
-JOURNAL_SECONDS = 15
+# Long: these machines are busy.
+SETTLE_SECONDS = 120
+JOURNAL_SECONDS = 30
 # The memory of the first thousand steps may grow by so much.
 WARM_AFTER, MOST_GROWTH = 1000, 1.10
 
@@ -149,13 +150,24 @@ class Monkey:
         self._wait(
             lambda: self.window.is_settled and not self.answers.is_asked(),
             SETTLE_SECONDS,
-            "the window does not settle",
+            lambda: f"the window does not settle: {self._unsettled()}",
         )
 
-    def _wait(self, condition: Callable[[], bool], seconds: float, words: str) -> None:
+    def _unsettled(self) -> str:
+        window = self.window
+        parts = ("presenter", "quality", "tuning", "grid", "maps")
+        busy = [name for name in parts if not getattr(window, name).is_settled]
+        busy += [name for name in ("jobs", "stepped") if not getattr(window, name).is_idle]
+        asking = QApplication.activePopupWidget() or QApplication.activeModalWidget()
+        return f"{busy}, asked by {asking}"
+
+    def _wait(
+        self, condition: Callable[[], bool], seconds: float, words: Callable[[], str]
+    ) -> None:
         end = time.monotonic() + seconds
         while not condition():
-            self._require(time.monotonic() < end, f"{words} within {seconds} s")
+            if time.monotonic() > end:
+                self._require(False, f"{words()}, for {seconds} s")
             QTest.qWait(2)
 
     def _check(self, number: int) -> None:
@@ -203,9 +215,9 @@ class Monkey:
             works = list(self._windows.glob(f"*/{WORK}"))
             if wanted is None or len(works) != 1:
                 return wanted is None and not works
-            return read_work(works[0]).record == _absolute(wanted)
+            return read_work(works[0]).record == wanted
 
-        self._wait(kept, JOURNAL_SECONDS, "the disk does not hold the session")
+        self._wait(kept, JOURNAL_SECONDS, lambda: "the disk does not hold the session")
 
     def _count(self, number: int, undo_steps: int) -> Figures:
         self._delete_deferred()
@@ -231,7 +243,3 @@ class Monkey:
     def _delete_deferred() -> None:
         QApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)
         QApplication.processEvents()
-
-
-def _absolute(record: object) -> object:
-    return record

@@ -214,9 +214,9 @@ class LandmarkTable(QTableView):
         return QModelIndex()
 
     def rename(self, name: str) -> None:
-        """Open the name of a landmark for typing."""
+        """Open the name of a landmark for typing; what is being typed already stays open."""
         index = self.index_of(name)
-        if index.isValid():
+        if index.isValid() and self.state() != QAbstractItemView.State.EditingState:
             self.setFocus()
             self.scrollTo(index)
             self.edit(index)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from pinwarp.core.alignment import AffineParts, decompose
 from pinwarp.core.components import Components, applied, as_drawn
+from pinwarp.core.errors import RangeError
 from pinwarp.core.factor import SourceFactor
 from pinwarp.core.findings import Finding, FindingKind
 from pinwarp.core.landmarks import Position
@@ -154,8 +155,16 @@ def quality_of(result: WarpResult) -> Quality | None:
     Returns
     -------
     Quality or None
-        None where there is no warp.
+        None where there is no warp, or one beyond all figures.
     """
+    try:
+        return _judged(result)
+    except RangeError:
+        # A part of the warp leaves the range of numbers: there is nothing to say in figures.
+        return None
+
+
+def _judged(result: WarpResult) -> Quality | None:
     factor, spline, inputs = result.factor, result.spline, result.inputs
     if factor is None or spline is None:
         return None

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pinwarp.core.errors import RangeError
 from pinwarp.core.findings import Finding
 from pinwarp.core.folds import Folds, folds_of
 from pinwarp.core.jacobian import determinants, jacobians
@@ -118,12 +119,10 @@ class Surveyor:
         mesh, shown = result.inputs.mesh, result.shown
         if mesh is None or shown is None:
             return Survey(result, kind, missing=missing)
-        if result is not self._result:
-            self._result, self._maps = result, {}
-            self._determinant = determinants(jacobians(shown, mesh.vertices))
-            self._folds = folds_of(self._determinant, mesh, shown)
-            assert result.factor is not None, "what is shown was solved from it"
-            self._size = overall_size(shown, result.factor)
+        try:
+            self._look_at(result, mesh, shown)
+        except RangeError as error:
+            return Survey(result, kind, missing="" if kind is None else str(error))
         taken_out = self._size if relative or must_be_relative(self._size) else 1.0
         if taken_out != self._taken_out:
             self._taken_out = taken_out
@@ -132,12 +131,26 @@ class Surveyor:
             self._destination = destination
             self._maps.pop(MapKind.DISTANCE, None)
         if kind is not None and not missing:
-            if kind not in self._maps:
-                self._make(kind, result, mesh, shown)
-            if kind not in self._maps:
-                missing = FEW_PAIRS
+            try:
+                if kind not in self._maps:
+                    self._make(kind, result, mesh, shown)
+                if kind not in self._maps:
+                    missing = FEW_PAIRS
+            except RangeError as error:
+                missing = str(error)
         found = self._maps.get(kind) if kind is not None and not missing else None
         return Survey(result, kind, found, missing, self._folds, self._size)
+
+    def _look_at(self, result: WarpResult, mesh: Mesh, shown: Spline) -> None:
+        """Do what every survey of a warp needs, unless it was done for the last one."""
+        if result is self._result:
+            return
+        self._result, self._maps = None, {}
+        self._determinant = determinants(jacobians(shown, mesh.vertices))
+        self._folds = folds_of(self._determinant, mesh, shown)
+        assert result.factor is not None, "what is shown was solved from it"
+        self._size = overall_size(shown, result.factor)
+        self._result = result
 
     def _make(self, kind: MapKind, result: WarpResult, mesh: Mesh, shown: Spline) -> None:
         factor, inputs = result.factor, result.inputs

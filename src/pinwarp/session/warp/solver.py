@@ -9,10 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinwarp.core.components import Components, applied, as_drawn
-from pinwarp.core.errors import PinwarpError
+from pinwarp.core.errors import PinwarpError, RangeError
 from pinwarp.core.factor import SourceFactor, factorise
 from pinwarp.core.landmarks import Position, Role, Side
-from pinwarp.core.live import Influence, PenaltySweep, PreviewPoints, can_follow, preview
+from pinwarp.core.live import (
+    Influence,
+    PenaltySweep,
+    PreviewPoints,
+    can_follow,
+    preview,
+    suits_single,
+)
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import PenaltyConvention, Spline, solve
 from pinwarp.session.session import Session
@@ -160,15 +167,18 @@ class WarpSolver:
             if len(inputs.source) <= EAGER_MODES:
                 _ = result.factor.modes
             kept = last if last is not None and last.shown is result.shown else WarpResult(inputs)
-            result = replace(
-                result,
-                vertices=self._unless_kept(
-                    result.shown, inputs.mesh, kept.inputs.mesh, kept.vertices
-                ),
-                stand_in=self._unless_kept(
-                    result.shown, inputs.stand_in, kept.inputs.stand_in, kept.stand_in
-                ),
-            )
+            try:
+                result = replace(
+                    result,
+                    vertices=self._unless_kept(
+                        result.shown, inputs.mesh, kept.inputs.mesh, kept.vertices
+                    ),
+                    stand_in=self._unless_kept(
+                        result.shown, inputs.stand_in, kept.inputs.stand_in, kept.stand_in
+                    ),
+                )
+            except RangeError as error:
+                result = WarpResult(inputs, problem=str(error))
         self._last = self._moving = result
         return result
 
@@ -183,9 +193,13 @@ class WarpSolver:
         mesh = inputs.stand_in or inputs.mesh
         if result.factor is None or result.shown is None or mesh is None:
             return result
-        vertices = self._shortcut(inputs, result.factor, mesh)
-        if vertices is None:
-            vertices = self._evaluate(result.shown, mesh)
+        try:
+            vertices = self._shortcut(inputs, result.factor, result.shown, mesh)
+            if vertices is None:
+                vertices = self._evaluate(result.shown, mesh)
+        except RangeError as error:
+            self._moving = WarpResult(inputs, problem=str(error))
+            return self._moving
         if inputs.stand_in is not None:
             return replace(result, stand_in=vertices)
         return replace(result, vertices=vertices)
@@ -203,11 +217,11 @@ class WarpSolver:
         try:
             factor, spline = self._spline(inputs)
             shown = self._applied(inputs, factor, spline)
+            landmarks = shown.evaluate(np.array(inputs.source))
+            passengers = shown.evaluate(np.array(inputs.passengers).reshape(-1, 3))
         except PinwarpError as error:
             return WarpResult(inputs, problem=str(error))
-        source, passengers = np.array(inputs.source), np.array(inputs.passengers).reshape(-1, 3)
         destination = np.array(inputs.destination)
-        landmarks = shown.evaluate(source)
         residuals = np.linalg.norm(landmarks - destination, axis=1)
         # What is only rounding must not sort rows or draw bars.
         residuals[residuals < ROUNDING * np.abs(destination).max()] = 0.0
@@ -218,7 +232,7 @@ class WarpSolver:
             shown=shown,
             landmarks=landmarks,
             residuals=residuals,
-            passengers=shown.evaluate(passengers) if len(passengers) else passengers,
+            passengers=passengers,
         )
 
     def _applied(self, inputs: WarpInputs, factor: SourceFactor, spline: Spline) -> Spline:
@@ -272,7 +286,7 @@ class WarpSolver:
         return self._points[mesh]
 
     def _shortcut(
-        self, inputs: WarpInputs, factor: SourceFactor, mesh: Mesh
+        self, inputs: WarpInputs, factor: SourceFactor, shown: Spline, mesh: Mesh
     ) -> NDArray[np.float32] | None:
         last = self._last
         if last is None or last.spline is None:
@@ -281,6 +295,9 @@ class WarpSolver:
         if not (was.is_whole and inputs.is_whole):
             return None
         if (was.source, was.planar) != (inputs.source, inputs.planar):
+            return None
+        points = self._preview_points(mesh)
+        if not (suits_single(last.spline, points) and suits_single(shown, points)):
             return None
         if was.destination == inputs.destination:
             if inputs.convention is PenaltyConvention.REGULARISING:
