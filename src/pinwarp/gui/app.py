@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import platformdirs
@@ -19,6 +19,8 @@ from pinwarp.gui.dialogs import Dialogs
 from pinwarp.gui.documents import Opening
 from pinwarp.gui.fast_view import default_format
 from pinwarp.gui.main_window import MainWindow
+from pinwarp.gui.recent_files import RecentFiles
+from pinwarp.io.atomic import sweep
 from pinwarp.io.samples import sample_session
 
 # Drawing a million triangles in software takes a while; a minute means that something hangs.
@@ -100,17 +102,19 @@ def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None)
     # The spline's own threads and BLAS's would fight over the cores.
     with threadpool_limits(limits=1, user_api="blas"):
         dialogs = PrintedMessages() if screenshot is not None else None
+        settings = user_settings() if screenshot is None else no_settings()
         window = (
-            MainWindow(user_settings(), state_folder=platformdirs.user_state_path("pinwarp"))
+            MainWindow(settings, state_folder=platformdirs.user_state_path("pinwarp"))
             if screenshot is None
-            else MainWindow(no_settings(), dialogs)
+            else MainWindow(settings, dialogs)
         )
         window.show()
         begin(window, opening, demo=demo)
         if screenshot is None:
             # Loading numba takes a second of the interpreter's time: after the first picture.
-            warm_up = threading.Thread(target=_warm_up, daemon=True)
-            QTimer.singleShot(_WARM_UP_AFTER_MS, warm_up.start)
+            folders = {path.parent for path in RecentFiles(settings).paths}
+            in_background = threading.Thread(target=_tidy_and_warm_up, args=(folders,), daemon=True)
+            QTimer.singleShot(_WARM_UP_AFTER_MS, in_background.start)
             return int(application.exec())
         saved = save_picture(window, screenshot)
         failed = not saved or bool(dialogs is not None and dialogs.errors)
@@ -119,8 +123,16 @@ def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None)
         return 1 if failed else 0
 
 
-def _warm_up() -> None:
-    """Load all that is compiled, what is needed first before the rest."""
+def _tidy_and_warm_up(folders: Iterable[Path]) -> None:
+    """Remove what was left, and load all that is compiled, what is needed first before the rest.
+
+    Parameters
+    ----------
+    folders
+        Where a window that was killed may have left half a session.
+    """
+    for folder in folders:
+        sweep(folder)
     kernel.warm_up()
     surface_distance.warm_up()
 
