@@ -32,4 +32,7 @@ def test_a_message_is_cut_at_a_readable_length(error):
 def test_a_short_message_is_whole_and_survives_a_worker():
     error = FileFormatError("a.csv", "It is empty.", 3)
     assert str(error) == "a.csv, line 3: It is empty."
-    assert str(pickle.loads(pickle.dumps(PinwarpError("It is empty.")))) == "It is empty."
+    again = pickle.loads(pickle.dumps(error))
+    assert (str(again), again.path, again.reason, again.line) == (
+        *(str(error), error.path, "It is empty.", 3),
+    )

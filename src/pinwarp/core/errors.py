@@ -19,6 +19,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 
 LONGEST = 1_000
@@ -94,6 +95,10 @@ class FileFormatError(PinwarpError, ValueError):
         self.line = line
         place = f"{self.path.name}, line {line}" if line is not None else self.path.name
         super().__init__(f"{place}: {self.reason}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Its only argument would be the whole message, of which no other process can make it.
+        return type(self), (self.path, self.reason, self.line)
 
 
 class NewerFileError(FileFormatError):
