@@ -17,7 +17,7 @@ from tests.session.study import bone, make_study, shape
 from pinwarp.core.landmarks import Side
 from pinwarp.io.landmark_files import read_landmarks
 from pinwarp.io.meshes import read_mesh
-from pinwarp.session.files import read_session, write_session
+from pinwarp.session.keeping.files import read_session, write_session
 from pinwarp.session.session import Session
 
 

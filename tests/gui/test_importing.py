@@ -13,14 +13,14 @@ from tests.gui.test_files import drop
 
 from pinwarp.core.landmarks import Landmark, Side, scaled
 from pinwarp.core.mesh import Mesh
-from pinwarp.gui.dialogs import Dialogs
-from pinwarp.gui.documents import Opening
+from pinwarp.gui.files.documents import Opening
+from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.io.landmark_files import write_landmarks
 from pinwarp.io.meshes import read_mesh, write_mesh
 from pinwarp.io.samples import assets_folder, sample_session
 from pinwarp.io.session_file import read_session
-from pinwarp.session.landmark_fit import Fit
-from pinwarp.session.landmark_import import Pairing
+from pinwarp.session.importing.fit import Fit
+from pinwarp.session.importing.landmarks import Pairing
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
 BY_NAME, BY_ORDER, AS_NEW = Pairing

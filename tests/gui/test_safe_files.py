@@ -11,8 +11,8 @@ from qtpy.QtWidgets import QApplication, QMessageBox
 
 from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
-from pinwarp.gui import saving
-from pinwarp.gui.dialogs import Answer, Dialogs, OpenTwice, Overwrite
+from pinwarp.gui.files import saving
+from pinwarp.gui.tasks.dialogs import Answer, Dialogs, OpenTwice, Overwrite
 from pinwarp.io import backup
 from pinwarp.io.file_names import backup_of
 from pinwarp.io.meshes import read_mesh, write_mesh

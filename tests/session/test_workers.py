@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from pinwarp.core.errors import PinwarpError
-from pinwarp.session.workers import on_cluster, on_this_machine
+from pinwarp.session.study.workers import on_cluster, on_this_machine
 
 
 def squared_unless_deadly(task):
@@ -72,7 +72,7 @@ def test_what_was_begun_is_finished_when_no_more_is_wanted(jobs):
 
 def test_a_scheduler_that_does_not_answer_is_named(monkeypatch):
     pytest.importorskip("distributed")
-    monkeypatch.setattr("pinwarp.session.workers.ANSWERS_WITHIN", "1s")
+    monkeypatch.setattr("pinwarp.session.study.workers.ANSWERS_WITHIN", "1s")
     with pytest.raises(PinwarpError, match=r"No Dask scheduler answers at tcp://127.0.0.1:9"):
         list(on_cluster(abs, [1], scheduler="tcp://127.0.0.1:9"))
 

@@ -21,7 +21,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-
 LONGEST = 1_000
 """More characters than anybody reads of one message."""
 

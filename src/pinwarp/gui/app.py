@@ -15,11 +15,11 @@ from qtpy.QtWidgets import QApplication
 from threadpoolctl import threadpool_limits
 
 from pinwarp.core import kernel, surface_distance
-from pinwarp.gui.dialogs import Dialogs
-from pinwarp.gui.documents import Opening
-from pinwarp.gui.fast_view import default_format
-from pinwarp.gui.main_window import MainWindow
-from pinwarp.gui.recent_files import RecentFiles
+from pinwarp.gui.files.documents import Opening
+from pinwarp.gui.files.recent_files import RecentFiles
+from pinwarp.gui.tasks.dialogs import Dialogs
+from pinwarp.gui.views.fast_view import default_format
+from pinwarp.gui.window.main_window import MainWindow
 from pinwarp.io.atomic import sweep
 from pinwarp.io.samples import sample_session
 

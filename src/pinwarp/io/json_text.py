@@ -47,7 +47,5 @@ def read_json(text: str, *, whole_as_float: bool = False) -> tuple[Any, tuple[st
                 seen.add(key)
         return found
 
-    value = json.loads(
-        text, object_pairs_hook=gather, parse_int=float if whole_as_float else None
-    )
+    value = json.loads(text, object_pairs_hook=gather, parse_int=float if whole_as_float else None)
     return value, tuple(repeated)
