@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import threading
 from collections.abc import Callable, Iterable, Sequence
@@ -78,7 +77,8 @@ def user_settings() -> QSettings:
 
 def no_settings() -> QSettings:
     """Return settings that remember nothing: a picture shows the window as it comes."""
-    return QSettings(os.devnull, QSettings.Format.IniFormat)
+    # Below a file there is no folder. Not the null device: for root, Qt puts a file in its place.
+    return QSettings(str(Path(__file__) / "none.ini"), QSettings.Format.IniFormat)
 
 
 def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None) -> int:

@@ -100,9 +100,9 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         with contextlib.suppress(OSError):
             temporary.unlink()
         # What is written knows no name, and the temporary one says nothing to the user.
-        if isinstance(error, OSError) and error.errno is not None:
-            if error.filename in (None, str(temporary)):
-                error.filename, error.filename2 = str(target), None
+        is_of_system = isinstance(error, OSError) and error.errno is not None
+        if is_of_system and error.filename in (None, str(temporary)):
+            error.filename, error.filename2 = str(target), None
         raise
     sweep(target.parent)
 

@@ -11,6 +11,7 @@ from typing import Any
 
 from pinwarp.core.components import Components
 from pinwarp.core.errors import FileFormatError
+from pinwarp.core.names import visible
 from pinwarp.io.csv_cells import as_sentence, formula_unquoted, shortened
 from pinwarp.io.csv_text import Row, lines_of, read_text, refuse_binary, rows_of
 from pinwarp.io.session_header import penalty_of
@@ -118,18 +119,26 @@ def read_manifest(path: str | Path) -> Manifest:
     for row in rows[1:]:
         try:
             subject = _subject(row, columns, separator, place)
-            if earlier := subjects.get(subject.name.casefold()):
+            # Some systems take two names for one whose letters are composed in other ways.
+            look = visible(subject.name).casefold()
+            if earlier := subjects.get(look):
                 raise ValueError(
-                    f"the name {shortened(subject.name)} was used in line {earlier.line}: "
+                    f"the name {shortened(subject.name)} was used in line {earlier.line}"
+                    f"{_unlike(subject.name, earlier.name)}: "
                     "the files of one would replace the other's"
                 )
         except ValueError as error:
             raise FileFormatError(place, as_sentence(str(error)), row.line) from None
-        subjects[subject.name.casefold()] = subject
+        subjects[look] = subject
     if not subjects:
         raise FileFormatError(place, "There is no subject in it: write one row for each.")
     unused = tuple(column for column in columns if column and column not in _COLUMNS)
     return Manifest(place, tuple(subjects.values()), unused)
+
+
+def _unlike(name: str, other: str) -> str:
+    """Say that two names only look alike, where it is so."""
+    return "" if name.casefold() == other.casefold() else " in letters that look the same"
 
 
 def _columns(path: Path, rows: Sequence[Row]) -> tuple[str, ...]:

@@ -139,10 +139,10 @@ def open_regular(path: str | Path) -> io.FileIO:
 
     Examples
     --------
-    >>> open_regular(os.devnull)
+    >>> open_regular(".")
     Traceback (most recent call last):
     ...
-    OSError: [Errno 22] it is a device and not a file: '/dev/null'
+    IsADirectoryError: [Errno 21] Is a directory: '.'
     """
     # Looked at before, since opening alone may do something to a device, and after, since it may
     # have become another file in between.
