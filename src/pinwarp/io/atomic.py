@@ -100,8 +100,12 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         with contextlib.suppress(OSError):
             temporary.unlink()
         # What is written knows no name, and the temporary one says nothing to the user.
-        is_of_system = isinstance(error, OSError) and error.errno is not None
-        if is_of_system and error.filename in (None, str(temporary)):
+        # Without a number the words are the writer's own, and a name would displace them.
+        if (
+            isinstance(error, OSError)
+            and error.errno is not None
+            and error.filename in (None, str(temporary))
+        ):
             error.filename, error.filename2 = str(target), None
         raise
     sweep(target.parent)
