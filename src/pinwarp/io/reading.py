@@ -16,6 +16,7 @@ from pinwarp.core.errors import FileFormatError
 LARGEST = 1 << 30
 """More bytes than any mesh that can be worked on; nothing larger is read to its end."""
 
+_LARGEST_UNSIZED = 64 << 20
 _CHUNK = 4 << 20
 _KINDS = (
     (stat.S_ISFIFO, "a pipe"),
@@ -186,12 +187,14 @@ def _chunks(place: Path, what: str, largest: int) -> Iterator[tuple[bytes, float
             size = os.fstat(file.fileno()).st_size
             if size > largest:
                 raise _too_large(place, f"{_in_words(size)} is", what, largest)
+            # What has no size to begin with need not have an end.
+            limit = largest if size else min(largest, _LARGEST_UNSIZED)
             done = 0
             while chunk := _next_chunk(file):
                 done += len(chunk)
                 # What the system says of the size need not be true: files of /proc have none.
-                if done > largest:
-                    raise _too_large(place, "The file goes on and on: it is", what, largest)
+                if done > limit:
+                    raise _too_large(place, "The file goes on and on: it is", what, limit)
                 yield chunk, min(1.0, done / max(size, done, 1))
     except FileNotFoundError:
         raise FileFormatError(

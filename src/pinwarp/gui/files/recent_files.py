@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from qtpy.QtCore import QSettings
@@ -27,7 +28,7 @@ class RecentFiles:
         """The files that still exist, newest first."""
         stored = self._settings.value(_KEY, [])
         names = [stored] if isinstance(stored, str) else list(stored or [])
-        return [path for path in map(Path, names) if path.is_file()]
+        return [path for path in map(Path, names) if os.path.isfile(path)]
 
     def add(self, path: Path) -> None:
         """Put a file first."""

@@ -51,7 +51,7 @@ class LostWork:
     def file_has_changed(self) -> bool:
         """Whether the session's file is another now than the one the work began with."""
         path = self.work.path
-        return path is not None and path.exists() and hash_of(path) != self.work.sha256
+        return path is not None and os.path.exists(path) and hash_of(path) != self.work.sha256
 
     def claim(self) -> FileLock | None:
         """Take the work for this process; None when another one was faster."""
