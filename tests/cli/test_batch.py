@@ -119,6 +119,30 @@ def test_a_manifest_with_a_mistake_is_refused_with_its_line(run, study, out):
     assert not out.exists()
 
 
+def test_a_row_that_cannot_be_used_fails_and_the_others_are_done(run, study, out):
+    manifest = study / "bad.csv"
+    manifest.write_text(
+        "name,destination_landmarks,penalty\ns0,s0.csv,much\ns1,~nosuchuser/x.csv,\ns2,s2.csv,\n"
+    )
+    outcome = run(manifest=manifest, exit_code=1)
+    assert "1 done, 0 unchanged, 2 failed of 3" in outcome.stdout
+    assert "s0: bad.csv, line 2: Penalty: 'much' is not a number." in outcome.stderr
+    rows = rows_of(out)
+    assert [row["status"] for row in rows.values()] == ["failed", "failed", "done"]
+    assert "line 3: Destination_landmarks: there is no user" in rows["s1"]["error"]
+    manifest.write_text(manifest.read_text().replace("much", "2"))
+    assert "1 done, 1 unchanged, 1 failed" in run(manifest=manifest, exit_code=1).stdout
+
+
+def test_a_name_that_only_looks_like_one_of_the_source_is_told(run, study, out):
+    marks = study / "s0.csv"
+    lines = marks.read_text().splitlines()
+    name = lines[1].partition(",")[0]
+    marks.write_text("\n".join([lines[0], "\u200b" + lines[1], *lines[2:]]) + "\n")
+    run()
+    assert f"'{name}' and '\\u200b{name}' look alike" in rows_of(out)["s0"]["notes"]
+
+
 def test_a_subject_that_fails_is_told_and_the_others_are_done(run, study, out):
     (study / "s0.csv").unlink()
     (study / "s1.stl").write_text("nonsense")

@@ -8,19 +8,21 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+from pinwarp.core.errors import readable
+
 BAD_USAGE = 2
 INTERRUPTED = 130
 
 
 def tell_error(words: str) -> None:
     """Say on one line what went wrong."""
-    typer.echo(f"pinwarp: {' '.join(words.splitlines())}", err=True)
+    typer.echo(f"pinwarp: {readable(' '.join(words.splitlines()))}", err=True)
 
 
 def tell_notes(notes: Iterable[str], about: str = "") -> None:
     """Say what the user should know beside the result, a line each."""
     for note in notes:
-        typer.echo(f"{about}: {note}" if about else note, err=True)
+        typer.echo(readable(f"{about}: {note}" if about else note), err=True)
 
 
 def progress_bar() -> Progress:

@@ -23,10 +23,31 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
+
+LONGEST = 1_000
+"""More characters than anybody reads of one message."""
+
+
+def readable(text: str) -> str:
+    """Return a message, its middle cut out where it is too long to be read.
+
+    Examples
+    --------
+    >>> readable("femur.csv: It is empty.")
+    'femur.csv: It is empty.'
+    >>> len(readable("a" * 1_000_000))
+    1000
+    """
+    if len(text) <= LONGEST:
+        return text
+    # What is wrong stands at the beginning, what to do about it at the end.
+    end = LONGEST // 3
+    return f"{text[: LONGEST - end - 3]} … {text[-end:]}"
 
 
 class PinwarpError(Exception):
-    """Whatever pinwarp raises on purpose: its message is meant for the user.
+    """Whatever pinwarp raises on purpose: its message is meant for the user, and cut for one.
 
     Examples
     --------
@@ -37,6 +58,9 @@ class PinwarpError(Exception):
     ...     print(error)
     The warping penalty is -1.0; it must be 0 or more.
     """
+
+    def __str__(self) -> str:
+        return readable(super().__str__())
 
 
 class LandmarkError(PinwarpError, ValueError):
@@ -86,10 +110,14 @@ class FileFormatError(PinwarpError, ValueError):
 
     def __init__(self, path: str | Path, reason: str, line: int | None = None) -> None:
         self.path = Path(path)
-        self.reason = reason
+        self.reason = readable(reason)
         self.line = line
         place = f"{self.path.name}, line {line}" if line is not None else self.path.name
-        super().__init__(f"{place}: {reason}")
+        super().__init__(f"{place}: {self.reason}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Its only argument would be the whole message, of which no other process can make it.
+        return type(self), (self.path, self.reason, self.line)
 
 
 class NewerFileError(FileFormatError):
@@ -105,8 +133,8 @@ def words_of(error: Exception) -> str:
     'bone.stl: Permission denied.'
     """
     if isinstance(error, OSError) and error.strerror:
-        return f"{error.filename or 'The file'}: {error.strerror}."
-    return str(error)
+        return readable(f"{error.filename or 'The file'}: {error.strerror}.")
+    return readable(str(error))
 
 
 class PinwarpWarning(UserWarning):

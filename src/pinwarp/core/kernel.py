@@ -6,7 +6,6 @@ import contextlib
 import functools
 import logging
 import os
-import tempfile
 import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -19,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.distance import cdist
 
 from pinwarp.core.blocks import BLOCK, LARGEST_FIELD
+from pinwarp.core.cache_folder import private_cache
 from pinwarp.core.positions import as_positions
 
 Matrix = NDArray[np.float64]
@@ -50,7 +50,7 @@ def compiled() -> ModuleType | None:
     """Return the compiled loops, or None where numba cannot compile."""
     if not _is_writable(Path(__file__).parent) and "NUMBA_CACHE_DIR" not in os.environ:
         # A package folder for reading only (a system-wide install): numba caches elsewhere.
-        os.environ["NUMBA_CACHE_DIR"] = str(Path(tempfile.gettempdir()) / f"pinwarp-{_user()}")
+        os.environ["NUMBA_CACHE_DIR"] = str(private_cache())
     try:
         from pinwarp.core import compiled as loops
 
@@ -64,10 +64,6 @@ def compiled() -> ModuleType | None:
 
 def _is_writable(folder: Path) -> bool:
     return os.access(folder, os.W_OK)
-
-
-def _user() -> int:
-    return os.getuid() if hasattr(os, "getuid") else 0
 
 
 def warm_up() -> None:

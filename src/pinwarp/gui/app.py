@@ -6,7 +6,7 @@ import errno
 import os
 import sys
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import platformdirs
@@ -21,6 +21,7 @@ from pinwarp.gui.files.documents import Opening
 from pinwarp.gui.views.fast_view import default_format
 from pinwarp.gui.window.main_window import MainWindow
 from pinwarp.gui.window.window_dialogs import WindowDialogs
+from pinwarp.io.atomic import sweep
 from pinwarp.io.samples import sample_session
 
 # Drawing a million triangles in software takes a while; a minute means that something hangs.
@@ -88,7 +89,8 @@ def user_settings() -> QSettings:
 
 def no_settings() -> QSettings:
     """Return settings that remember nothing: a picture shows the window as it comes."""
-    return QSettings(os.devnull, QSettings.Format.IniFormat)
+    # Below a file there is no folder. Not the null device: for root, Qt puts a file in its place.
+    return QSettings(str(Path(__file__) / "none.ini"), QSettings.Format.IniFormat)
 
 
 def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None) -> int:
@@ -131,8 +133,9 @@ def _run_for_user(application: QApplication, opening: Opening, *, demo: bool) ->
         # From the event loop: what goes wrong there must not keep the window from starting.
         QTimer.singleShot(0, window, lambda: begin(window, opening, demo=demo))
         # Loading numba takes a second of the interpreter's time: after the first picture.
-        warm_up = threading.Thread(target=_warm_up, daemon=True)
-        QTimer.singleShot(_WARM_UP_AFTER_MS, warm_up.start)
+        folders = {path.parent for path in window.parts.documents.recent}
+        in_background = threading.Thread(target=_tidy_and_warm_up, args=(folders,), daemon=True)
+        QTimer.singleShot(_WARM_UP_AFTER_MS, in_background.start)
         return int(application.exec())
 
 
@@ -158,8 +161,16 @@ def user_window(dialogs: WindowDialogs | None = None) -> MainWindow:
     return window
 
 
-def _warm_up() -> None:
-    """Load all that is compiled, what is needed first before the rest."""
+def _tidy_and_warm_up(folders: Iterable[Path]) -> None:
+    """Remove what was left, and load all that is compiled, what is needed first before the rest.
+
+    Parameters
+    ----------
+    folders
+        Where a window that was killed may have left half a session.
+    """
+    for folder in folders:
+        sweep(folder)
     kernel.warm_up()
     surface_distance.warm_up()
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import zipfile
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +19,9 @@ from pinwarp.core.components import Components
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.spline import PenaltyConvention, Spline
 from pinwarp.io.atomic import atomic_path
+from pinwarp.io.csv_cells import shortened
+from pinwarp.io.json_text import read_json
+from pinwarp.io.reading import read_content
 
 COEFFICIENT_SUFFIXES = (".json", ".npz")
 FORMAT = "pinwarp-coefficients"
@@ -32,6 +37,8 @@ EQUATION = (
     "axis is then mirrored about the middle of its bounds."
 )
 
+# A landmark takes some hundred bytes, whichever way it is written.
+_LARGEST = 64 << 20
 _ARRAYS = ("source_landmarks", "weights", "affine")
 _TEXTS = (
     "unit",
@@ -43,6 +50,22 @@ _TEXTS = (
     "destination_mirrored",
     "pinwarp",
 )
+
+
+_DAMAGE = (
+    KeyError,
+    ValueError,
+    TypeError,
+    ArithmeticError,
+    OSError,
+    EOFError,
+    NotImplementedError,
+    RuntimeError,
+    MemoryError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+"""What Python and numpy raise over bytes that are no coefficients."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,15 +166,11 @@ def read_coefficients(path: str | Path) -> Coefficients:
     FileFormatError
         When the file is missing, of another kind, of a newer version, or damaged.
     """
-    path = Path(path)
+    read = _read_json if _suffix(path) == ".json" else _read_npz
+    content = read_content(path, what="coefficients", largest=_LARGEST)
     try:
-        fields = _read_json(path) if _suffix(path) == ".json" else _read_npz(path)
-        return _coefficients(fields)
-    except FileNotFoundError:
-        raise FileFormatError(path, "There is no such file.") from None
-    except (KeyError, ValueError, TypeError, OSError, EOFError, zipfile.BadZipFile) as error:
-        if isinstance(error, FileFormatError):
-            raise
+        return _coefficients(read(content.data))
+    except _DAMAGE as error:
         reason = f"{error.args[0]!r} is missing" if isinstance(error, KeyError) else str(error)
         raise FileFormatError(
             path, f"These are no coefficients of a warp ({reason}). Export them again."
@@ -212,19 +231,22 @@ def _json(fields: Mapping[str, Any]) -> str:
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
-def _read_json(path: Path) -> dict[str, Any]:
-    fields = json.loads(path.read_text(encoding="utf-8"))
+def _read_json(data: bytes) -> dict[str, Any]:
+    fields, repeated = read_json(data.decode("utf-8"))
     if not isinstance(fields, dict):
         raise ValueError("it is not an object")
+    if repeated:
+        # Which of the two was meant, nobody knows; a wrong warp would look like any other.
+        raise ValueError(f"{shortened(repeated[0])} is there twice")
     return fields
 
 
-def _read_npz(path: Path) -> dict[str, Any]:
+def _read_npz(data: bytes) -> dict[str, Any]:
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        if sum(entry.file_size for entry in archive.infolist()) > _LARGEST:
+            raise ValueError("it unpacks to more than any warp has")
     # Without pickles: a file from a stranger must not run code.
-    with path.open("rb") as content:
-        file = np.load(content, allow_pickle=False)
-        if not isinstance(file, np.lib.npyio.NpzFile):
-            raise ValueError("it holds a single array")
+    with np.load(io.BytesIO(data), allow_pickle=False) as file:
         return {key: file[key].tolist() for key in file.files}
 
 

@@ -12,7 +12,7 @@ from pinwarp.io.atomic import write_atomically
 from pinwarp.io.csv_cells import shortened
 from pinwarp.io.csv_text import LONGEST_CELL, lines_of, read_text
 from pinwarp.io.mesh_reference import MeshReference, mesh_text
-from pinwarp.io.session_header import VERSION, is_header, read_header, read_values
+from pinwarp.io.session_header import VERSION, header_line, is_header, read_header, read_values
 from pinwarp.io.session_table import read_table, table_lines
 
 __all__ = ["MeshReference", "SessionRecord", "read_session", "write_session"]
@@ -122,8 +122,9 @@ def write_session(path: str | Path, record: SessionRecord, *, relative_meshes: b
     if record.blend != SessionRecord.blend:
         header.append(("blend", repr(float(record.blend))))
     # Every header entry stays on its line, whatever it says.
-    lines = [" ".join(f"# {key}: {text}".splitlines()).rstrip() + "\n" for key, text in header]
-    lines += [f"# {key}: {text}\n" if key else f"# {text}\n" for key, text in record.unknown]
+    entries = [" ".join(f"# {key}: {text}".splitlines()).rstrip() for key, text in header]
+    entries += [f"# {key}: {text}" if key else f"# {text}" for key, text in record.unknown]
+    lines = [header_line(entry) for entry in entries]
     lines += table_lines(record.landmarks)
     write_atomically(path, "".join(lines))
 

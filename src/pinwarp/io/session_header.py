@@ -15,6 +15,7 @@ from pinwarp.core.components import Components
 from pinwarp.core.errors import FileFormatError, NewerFileError
 from pinwarp.core.mirror import AXES
 from pinwarp.io.csv_cells import YES_NO, as_sentence, number_of, shortened
+from pinwarp.io.csv_text import plain_line
 from pinwarp.io.mesh_reference import MeshReference, mesh_reference
 
 VERSION = 1
@@ -39,6 +40,10 @@ _CONVENTIONS = ("regularising", "opynsim")
 _COMPONENTS = tuple(part.value for part in Components)
 
 
+# To a spreadsheet, what follows a separator is a cell of its own.
+_HAS_FORMULA = re.compile(r"[,;\t][\s\"']*[=+\-@＝＋－＠]")
+
+
 class HeaderLine(NamedTuple):
     """One header line: its number, key and text; a line without a colon has an empty key."""
 
@@ -58,6 +63,17 @@ def is_header(line: str) -> bool:
     text = line.strip().lstrip('"')
     # A spreadsheet fills blank lines with separators.
     return text.startswith("#") or not text.strip(',;\t "')
+
+
+def header_line(entry: str) -> str:
+    r"""Return a line of the header; one that holds what a spreadsheet would run is in quotes.
+
+    Examples
+    --------
+    >>> header_line("# unit: mm"), header_line("# unit: mm,=1+1")
+    ('# unit: mm\n', '"# unit: mm,=1+1"\n')
+    """
+    return plain_line([entry]) if _HAS_FORMULA.search(entry) else f"{entry}\n"
 
 
 def read_header(path: str | Path, lines: Sequence[str], separator: str) -> list[HeaderLine]:
@@ -93,7 +109,8 @@ def read_header(path: str | Path, lines: Sequence[str], separator: str) -> list[
     mangled = first.endswith(separator) or first.startswith('"')
     found = []
     for number, line in enumerate(lines, 1):
-        text = _header_text(line.rstrip("\r\n"), separator, mangled)
+        line = line.rstrip("\r\n")
+        text = _header_text(line, separator, mangled or line.startswith('"#'))
         if text.startswith("#"):
             entry = text.removeprefix("#").strip()
             key, colon, value = entry.partition(":")

@@ -142,6 +142,11 @@ class Documents(Capability):
         """Take the menu of recent files away: it holds on to this."""
         self.recent_menu.deleteLater()
 
+    @property
+    def recent(self) -> list[Path]:
+        """The sessions opened last that still exist, newest first."""
+        return self._recent.paths
+
     def open_sample(self) -> None:
         """Open the sample bones as a new session, asking about unsaved work first."""
         if self._saving.may_lose_changes():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.names import look_alike_notes
 from pinwarp.gui.drawn.surface import Surface
 from pinwarp.gui.files.file_dialogs import FileDialogs
 from pinwarp.gui.tasks.file_tasks import FileTasks, Progress
@@ -85,7 +87,7 @@ class SessionMeshes:
         there = {side: mesh for side, mesh in references.items() if mesh is not None}
         opening = _Opening(record, folder, title, arrived, there)
         for side, reference in there.items():
-            if reference.path.is_file():
+            if os.path.isfile(reference.path):
                 opening.places[side] = reference.path
         self._find(opening)
 
@@ -160,7 +162,7 @@ class SessionMeshes:
         self._tasks.run(opening.title, read, arrived)
 
     def _report(self, opening: _Opening, found: dict[Side, MeshFile]) -> None:
-        """Say which meshes have moved or are not what they were."""
+        """Say which meshes have moved or are not what they were, and which names look alike."""
         changes, moved = [], []
         for side, file in found.items():
             reference = opening.references[side]
@@ -169,8 +171,9 @@ class SessionMeshes:
             is_same = not reference.sha256 or file.sha256 == reference.sha256
             if not is_same and side not in opening.accepted:
                 changes.append(_change(side, file, reference))
-        if moved:
-            self._tasks.said.emit("; ".join(moved))
+        alike = look_alike_notes(landmark.name for landmark in opening.record.landmarks)
+        if moved or alike:
+            self._tasks.said.emit("; ".join((*moved, *alike)))
         if changes:
             self._tasks.dialogs.tell(
                 "A mesh has changed" if len(changes) == 1 else "Both meshes have changed",

@@ -14,6 +14,7 @@ from pinwarp.core.folds import Folds, folds_of
 from pinwarp.core.jacobian import determinants, jacobians
 from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.names import look_alike_notes
 from pinwarp.core.spline import Spline
 from pinwarp.core.surface_distance import DistanceFigures, SurfaceIndex
 from pinwarp.io.meshes import MeshFile
@@ -201,7 +202,7 @@ def check(session: Session) -> Check:
         else _distance(result.shown, source, destination),
         # Sorted is stable: the order within is kept.
         findings=tuple(sorted(findings, key=lambda named: not is_flagged(named.finding))),
-        notes=_about_files(session),
+        notes=(*_about_files(session), *look_alike_notes(x.name for x in session.landmarks)),
     )
 
 

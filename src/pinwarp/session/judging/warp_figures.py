@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinwarp.core.components import Components
+from pinwarp.io.csv_cells import numeral
 from pinwarp.io.csv_text import csv_line
 from pinwarp.session.judging.quality import Quality
 
@@ -173,9 +174,9 @@ def figures_table(quality: Quality, unit: str) -> str:
     for part in Components:
         rms = quality.rms_by_components[part]
         tidy = rms if rms > _noise(quality) else 0.0
-        rows.append(("RMS left", _PARTS[part], f"{tidy:.10g}", unit))
+        rows.append(("RMS left", _PARTS[part], numeral(f"{tidy:.10g}"), unit))
     for row in warp_figures(quality, unit):
-        rows += [(row.title, x.name, f"{x.value:.10g}", x.unit) for x in row.figures]
+        rows += [(row.title, x.name, numeral(f"{x.value:.10g}"), x.unit) for x in row.figures]
     return "".join(csv_line(row, "\t") for row in rows)
 
 

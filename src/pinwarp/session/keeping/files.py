@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -110,11 +111,11 @@ def with_meshes(
         reference = session.mesh_file(side)
         if not isinstance(reference, MeshReference):
             continue
-        if not reference.path.is_file() and folder is not None:
+        if not os.path.isfile(reference.path) and folder is not None:
             found = find_mesh(reference, [folder])
             if found is not None and found.is_same:
                 reference = replace(reference, path=found.path)
-        if reference.path.is_file():
+        if os.path.isfile(reference.path):
             session = session.with_mesh(side, _read(reference))
     return session
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError, PinwarpError, words_of
 from pinwarp.core.landmarks import Landmark, Role, Side
+from pinwarp.core.names import look_alike_notes
 from pinwarp.io.landmark_files import LandmarkReading, read_landmarks, write_landmarks
 from pinwarp.io.manifest import Subject
 from pinwarp.io.meshes import MeshFile, read_mesh, write_mesh
@@ -187,6 +188,7 @@ def with_destinations(
     if placed:
         unknown = list(placed)
         notes.append(f"{_landmarks(unknown)} not on the source: {_some(unknown)}.")
+    notes += look_alike_notes((*missing, *placed))
     notes += [f"{path.name}, line {x.line} was skipped: {x.reason}." for x in reading.skipped]
     return session, tuple(notes)
 
@@ -216,9 +218,12 @@ def made_from(task: Task) -> str:
     Raises
     ------
     FileFormatError
-        When a file is missing; the message names the line of the manifest.
+        When a file is missing or the row cannot be used; the message names the line of the
+        manifest.
     """
     subject, session = task.subject, task.session
+    if subject.problem:
+        raise FileFormatError(task.manifest, subject.problem, subject.line)
     source = session.source
     parts = (
         __version__,
