@@ -132,6 +132,22 @@ def test_a_subject_that_fails_is_told_and_the_others_are_done(run, study, out):
     assert not (out / "s1_warped.ply").exists()
 
 
+def test_a_cell_that_is_no_number_fails_its_row_and_names_its_column(run, study, out):
+    manifest = study / "own.csv"
+    head = "name,destination_landmarks,penalty"
+    manifest.write_text(f"{head}\ns0,s0.csv,1\ns1,s1.csv,0.5\n")
+    run(manifest=manifest)
+    # Its outputs of before are there, and it is not unchanged all the same.
+    manifest.write_text(f"{head}\ns0,s0.csv,much\ns1,s1.csv,0.5\n")
+    outcome = run(manifest=manifest, exit_code=1)
+    words = "own.csv, line 2: In the column 'penalty': 'much' is not a number."
+    assert outcome.stderr == f"pinwarp: s0: {words}\n"
+    assert "0 done, 1 unchanged, 1 failed of 2" in outcome.stdout
+    rows = rows_of(out)
+    assert (rows["s0"]["status"], rows["s0"]["error"]) == ("failed", words)
+    assert rows["s1"]["status"] == "done"
+
+
 def test_a_second_run_does_only_what_failed(run, study, out):
     text = (study / "s1.csv").read_text()
     (study / "s1.csv").write_text("nonsense")

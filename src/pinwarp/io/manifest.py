@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 from pinwarp.core.components import Components
 from pinwarp.core.errors import FileFormatError
 from pinwarp.io.csv_cells import as_sentence, formula_unquoted, shortened
 from pinwarp.io.csv_text import Row, lines_of, read_text, refuse_binary, rows_of
 from pinwarp.io.session_header import penalty_of
+
+T = TypeVar("T")
 
 REQUIRED = ("name", "destination_landmarks")
 OPTIONAL = ("destination_mesh", "penalty", "components")
@@ -38,6 +41,9 @@ class Subject:
         Absolute paths; there need not be a mesh.
     penalty, components
         For this subject alone; None where the row leaves them open.
+    problem
+        Why the row cannot be used, as a sentence; the cells then mean nothing. Such a subject
+        fails, and the others go on.
     """
 
     name: str
@@ -46,6 +52,7 @@ class Subject:
     destination_mesh: Path | None = None
     penalty: float | None = None
     components: Components | None = None
+    problem: str = ""
 
 
 @dataclass(frozen=True)
@@ -83,8 +90,9 @@ def read_manifest(path: str | Path) -> Manifest:
     Raises
     ------
     FileFormatError
-        When a column is missing or a row cannot be used; the message names the line. Whether the
-        files are there is not looked at.
+        When a column is missing, or a row has no name of its own by which it could be told; the
+        message names the line. What else is wrong with a row is told by its subject. Whether
+        the files are there is not looked at.
 
     Examples
     --------
@@ -112,15 +120,22 @@ def read_manifest(path: str | Path) -> Manifest:
     subjects: dict[str, Subject] = {}
     for row in rows[1:]:
         try:
-            subject = _subject(row, columns, separator, place.parent)
-            if earlier := subjects.get(subject.name.casefold()):
+            cells = _cells(row, columns)
+            name = checked_name(formula_unquoted(cells.get("name", "")))
+            if earlier := subjects.get(name.casefold()):
                 raise ValueError(
-                    f"the name {shortened(subject.name)} was used in line {earlier.line}: "
+                    f"the name {shortened(name)} was used in line {earlier.line}: "
                     "the files of one would replace the other's"
                 )
         except ValueError as error:
             raise FileFormatError(place, as_sentence(str(error)), row.line) from None
-        subjects[subject.name.casefold()] = subject
+        try:
+            if any(cell.strip() for cell in row.cells[len(columns) :]):
+                raise ValueError(f"the row has {len(row.cells)} cells for {len(columns)} columns")
+            subject = _subject(name, row.line, cells, separator, place.parent)
+        except ValueError as error:
+            subject = Subject(name, row.line, place, problem=as_sentence(str(error)))
+        subjects[name.casefold()] = subject
     if not subjects:
         raise FileFormatError(place, "There is no subject in it: write one row for each.")
     unused = tuple(column for column in columns if column and column not in _COLUMNS)
@@ -144,25 +159,34 @@ def _columns(path: Path, rows: Sequence[Row]) -> tuple[str, ...]:
     return columns
 
 
-def _subject(row: Row, columns: Sequence[str], separator: str, folder: Path) -> Subject:
-    """Make a subject of one row, or raise a ValueError with the reason."""
+def _cells(row: Row, columns: Sequence[str]) -> dict[str, str]:
     if row.problem:
         raise ValueError(row.problem)
-    if any(cell.strip() for cell in row.cells[len(columns) :]):
-        raise ValueError(f"the row has {len(row.cells)} cells for {len(columns)} columns")
-    cells = dict(zip(columns, (cell.strip() for cell in row.cells), strict=False))
-    name = checked_name(formula_unquoted(cells.get("name", "")))
-    landmarks, mesh = (cells.get(f"destination_{what}", "") for what in ("landmarks", "mesh"))
-    if not landmarks:
+    return dict(zip(columns, (cell.strip() for cell in row.cells), strict=False))
+
+
+def _subject(
+    name: str, line: int, cells: Mapping[str, str], separator: str, folder: Path
+) -> Subject:
+    """Make a subject of one row, or raise a ValueError with the column and the reason."""
+
+    def read(column: str, reader: Callable[[str], T]) -> T | None:
+        text = cells.get(column, "")
+        try:
+            return reader(text) if text else None
+        except ValueError as error:
+            raise ValueError(f"in the column {column!r}: {error}") from None
+
+    landmarks = read("destination_landmarks", lambda text: _path(text, folder))
+    if landmarks is None:
         raise ValueError(f"{shortened(name)} has no destination_landmarks")
-    penalty, components = cells.get("penalty", ""), cells.get("components", "")
     return Subject(
         name=name,
-        line=row.line,
-        destination_landmarks=_path(landmarks, folder),
-        destination_mesh=_path(mesh, folder) if mesh else None,
-        penalty=penalty_of(penalty, separator) if penalty else None,
-        components=_components(components) if components else None,
+        line=line,
+        destination_landmarks=landmarks,
+        destination_mesh=read("destination_mesh", lambda text: _path(text, folder)),
+        penalty=read("penalty", lambda text: penalty_of(text, separator)),
+        components=read("components", _components),
     )
 
 
@@ -205,4 +229,4 @@ def _components(text: str) -> Components:
         return Components(text.lower().replace("_", " ").replace("-", " "))
     except ValueError:
         known = ", ".join(part.value for part in Components)
-        raise ValueError(f"the components {shortened(text)} are none of {known}") from None
+        raise ValueError(f"{shortened(text)} is none of {known}") from None

@@ -216,9 +216,12 @@ def made_from(task: Task) -> str:
     Raises
     ------
     FileFormatError
-        When a file is missing; the message names the line of the manifest.
+        When the row cannot be used or a file is missing; the message names the line of the
+        manifest.
     """
     subject, session = task.subject, task.session
+    if subject.problem:
+        raise FileFormatError(task.manifest, subject.problem, subject.line)
     source = session.source
     parts = (
         pinwarp.__version__,
