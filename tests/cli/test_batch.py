@@ -19,6 +19,7 @@ from pinwarp.io.landmark_files import read_landmarks
 from pinwarp.io.meshes import read_mesh
 from pinwarp.session.files import read_session, write_session
 from pinwarp.session.session import Session
+from pinwarp.session.workers import WorkEnded
 
 
 @pytest.fixture
@@ -146,6 +147,40 @@ def test_a_cell_that_is_no_number_fails_its_row_and_names_its_column(run, study,
     rows = rows_of(out)
     assert (rows["s0"]["status"], rows["s0"]["error"]) == ("failed", words)
     assert rows["s1"]["status"] == "done"
+
+
+def test_what_was_done_stays_when_the_cluster_is_lost(pinwarp_command, study, out, monkeypatch):
+    def lost_after_one(function, tasks):
+        yield tasks[0], function(tasks[0])
+        raise WorkEnded("The scheduler is gone.")
+
+    arguments = ("batch", study / "study.csv", "-o", out, "--session", study / "study.pinwarp.csv")
+    with monkeypatch.context() as patch:
+        patch.setattr("pinwarp.cli.batch.runner_of", lambda *_: lost_after_one)
+        outcome = pinwarp_command(*arguments, "--scheduler", "tcp://node7:8786", exit_code=3)
+    assert outcome.stdout.startswith("1 done, 0 unchanged, 0 failed of 3: see ")
+    assert outcome.stderr == (
+        "pinwarp: The scheduler is gone. What was done stays: "
+        "the same command goes on from there.\n"
+    )
+    assert list(rows_of(out)) == ["s0"]
+    assert "2 done, 1 unchanged" in pinwarp_command(*arguments, "--jobs", 1).stdout
+
+
+def test_a_malformed_address_is_refused_before_anything_is_read_or_written(pinwarp_command, out):
+    outcome = pinwarp_command(
+        "batch", "gone.csv", "-o", out, "--scheduler", "tcp://node7", exit_code=2
+    )
+    assert outcome.stderr.startswith("pinwarp: 'tcp://node7' is no address of a scheduler: ")
+    assert not out.exists()
+
+
+def test_an_interruption_that_is_meant_ends_in_words(run, monkeypatch):
+    def interrupt(*_arguments, **_options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("pinwarp.session.batch.run", interrupt)
+    assert run(exit_code=130).stderr == "pinwarp: Interrupted.\n"
 
 
 def test_a_second_run_does_only_what_failed(run, study, out):
