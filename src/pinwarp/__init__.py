@@ -39,13 +39,13 @@ if TYPE_CHECKING:
     from pinwarp.core.surface_distance import compare_surfaces
     from pinwarp.io.landmark_files import read_landmarks, write_landmarks
     from pinwarp.io.meshes import MeshFile, read_mesh, write_mesh
-    from pinwarp.session.check import Check, check
-    from pinwarp.session.exports import warped_mesh, warped_passengers
-    from pinwarp.session.files import read_session, write_session
+    from pinwarp.session.judging.check import Check, check
+    from pinwarp.session.keeping.files import read_session, write_session
+    from pinwarp.session.outputs.exports import warped_mesh, warped_passengers
     from pinwarp.session.session import Session
     from pinwarp.tps3d import PenaltyConvention, TPSCoefficients3D, solve_coefficients
 
-__version__ = "0.1.0"
+from pinwarp.version import __version__
 
 __all__ = [
     "Check",
@@ -87,9 +87,9 @@ _HOMES = {
     "core.surface_distance": ("compare_surfaces",),
     "io.landmark_files": ("read_landmarks", "write_landmarks"),
     "io.meshes": ("MeshFile", "read_mesh", "write_mesh"),
-    "session.check": ("Check", "check"),
-    "session.exports": ("warped_mesh", "warped_passengers"),
-    "session.files": ("read_session", "write_session"),
+    "session.judging.check": ("Check", "check"),
+    "session.outputs.exports": ("warped_mesh", "warped_passengers"),
+    "session.keeping.files": ("read_session", "write_session"),
     "session.session": ("Session",),
     "tps3d": ("PenaltyConvention", "TPSCoefficients3D", "solve_coefficients"),
 }

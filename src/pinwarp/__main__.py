@@ -37,7 +37,7 @@ def _open_window(
     # Qt and VTK are loaded only once a window is wanted.
     os.environ.setdefault("QT_API", "pyside6")
     from pinwarp.gui.app import run
-    from pinwarp.gui.documents import Opening
+    from pinwarp.gui.files.documents import Opening
 
     opening = Opening(session, source, destination, source_landmarks, destination_landmarks)
     return run(opening, demo=demo, screenshot=screenshot)

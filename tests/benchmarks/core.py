@@ -19,8 +19,8 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import solve
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session import edits
-from pinwarp.session.results import WarpInputs, WarpSolver
 from pinwarp.session.session import Session
+from pinwarp.session.warp.solver import WarpInputs, WarpSolver
 from pinwarp.tps3d import solve_coefficients
 from tests.benchmarks.peers import PEERS
 from tests.benchmarks.shapes import landmark_pairs, surface_points

@@ -16,7 +16,7 @@ from qtpy.QtWidgets import QApplication, QWidget
 
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.gui.app import PrintedMessages, make_application
-from pinwarp.gui.main_window import MainWindow
+from pinwarp.gui.window.main_window import MainWindow
 from pinwarp.session import edits
 from tests.benchmarks.shapes import true_warp
 

@@ -17,9 +17,9 @@ from tests.session.study import bone, make_study, shape
 from pinwarp.core.landmarks import Side
 from pinwarp.io.landmark_files import read_landmarks
 from pinwarp.io.meshes import read_mesh
-from pinwarp.session.files import read_session, write_session
+from pinwarp.session.keeping.files import read_session, write_session
 from pinwarp.session.session import Session
-from pinwarp.session.workers import WorkEnded
+from pinwarp.session.study.workers import WorkEnded
 
 
 @pytest.fixture
@@ -179,7 +179,7 @@ def test_an_interruption_that_is_meant_ends_in_words(run, monkeypatch):
     def interrupt(*_arguments, **_options):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("pinwarp.session.batch.run", interrupt)
+    monkeypatch.setattr("pinwarp.session.study.batch.run", interrupt)
     assert run(exit_code=130).stderr == "pinwarp: Interrupted.\n"
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from pinwarp.core.landmarks import Landmark, as_position
 from pinwarp.io.meshes import read_mesh
-from pinwarp.session.files import read_session, write_session
+from pinwarp.session.keeping.files import read_session, write_session
 from pinwarp.session.session import Session
 
 KEYS = {

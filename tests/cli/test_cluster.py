@@ -14,9 +14,9 @@ from tests.session.study import make_study
 
 from pinwarp.io.manifest import read_manifest
 from pinwarp.io.summary_file import read_summary
-from pinwarp.session import batch
-from pinwarp.session.cluster import on_cluster
-from pinwarp.session.files import read_session
+from pinwarp.session.keeping.files import read_session
+from pinwarp.session.study import batch
+from pinwarp.session.study.cluster import on_cluster
 
 distributed = pytest.importorskip("distributed")
 

@@ -6,7 +6,7 @@ import pytest
 
 from pinwarp.core.landmarks import Side
 from pinwarp.io.landmark_files import read_landmarks
-from pinwarp.session.files import read_session
+from pinwarp.session.keeping.files import read_session
 
 RAS = (
     "# Markups fiducial file version = 4.11\n# CoordinateSystem = RAS\n"

@@ -13,9 +13,9 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.io.landmark_files import read_landmarks, write_landmarks
 from pinwarp.io.meshes import read_mesh, write_mesh
 from pinwarp.session import edits
-from pinwarp.session.exports import session_spline, warped_mesh
-from pinwarp.session.files import read_session, write_session
+from pinwarp.session.keeping.files import read_session, write_session
 from pinwarp.session.mesh_units import scale_side
+from pinwarp.session.outputs.exports import session_spline, warped_mesh
 
 
 @pytest.fixture

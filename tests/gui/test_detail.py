@@ -12,8 +12,8 @@ from qtpy.QtWidgets import QApplication
 
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.core.mesh import Mesh
-from pinwarp.gui import canvas
-from pinwarp.gui.surface import STAND_IN, Surface
+from pinwarp.gui.drawn.surface import STAND_IN, Surface
+from pinwarp.gui.views import canvas
 from pinwarp.session import edits
 
 

@@ -8,15 +8,15 @@ import pyvista as pv
 
 from pinwarp.core.components import Components
 from pinwarp.core.landmarks import Side, positions
-from pinwarp.gui.dialogs import Existing
+from pinwarp.gui.tasks.dialogs import Existing
 from pinwarp.io.coefficients import read_coefficients
 from pinwarp.io.landmark_files import read_landmarks, write_landmarks
 from pinwarp.io.meshes import read_mesh
 from pinwarp.io.samples import assets_folder
 from pinwarp.session import edits
-from pinwarp.session.exports import session_coefficients, warped_mesh, warped_passengers
-from pinwarp.session.mesh_data import warped_mesh_data
-from pinwarp.session.script import script_of
+from pinwarp.session.judging.mesh_data import warped_mesh_data
+from pinwarp.session.outputs.exports import session_coefficients, warped_mesh, warped_passengers
+from pinwarp.session.outputs.script import script_of
 
 FIGURES = {"distance_mm", "det_j", "largest_stretch", "smallest_stretch", "deviation_mm"}
 

@@ -16,7 +16,7 @@ from tests.gui.test_warp_panel import (
 
 from pinwarp.core.components import applied
 from pinwarp.core.landmarks import positions
-from pinwarp.gui.camera_pose import Pose
+from pinwarp.gui.scene.camera_pose import Pose
 from pinwarp.session.editor import GridKind
 
 

@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from pinwarp.gui.jobs import Cancelled, LatestWins, SlowJob
+from pinwarp.gui.tasks.jobs import Cancelled, LatestWins, SlowJob
 
 
 @pytest.fixture

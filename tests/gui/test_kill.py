@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from tests.gui.working_window import digest_of
 
-from pinwarp.session.recovery import find_lost_work
+from pinwarp.session.keeping.recovery import find_lost_work
 
 # More of them by hand: PINWARP_KILLS=20 pytest -s tests/gui/test_kill.py
 KILLS = int(os.environ.get("PINWARP_KILLS", "3"))

@@ -10,9 +10,9 @@ from qtpy.QtTest import QAbstractItemModelTester, QTest
 from qtpy.QtWidgets import QTableView
 
 from pinwarp.core.landmarks import Landmark, Side
-from pinwarp.gui.landmark_columns import COLUMNS, column_number
-from pinwarp.gui.landmark_model import LandmarkModel
-from pinwarp.gui.landmark_order import LandmarkOrder
+from pinwarp.gui.table.columns import COLUMNS, column_number
+from pinwarp.gui.table.model import LandmarkModel
+from pinwarp.gui.table.order import LandmarkOrder
 from pinwarp.session import edits
 from pinwarp.session.session import Session
 

@@ -19,8 +19,8 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.landmarks import Landmark, LandmarkState, Role, Side
-from pinwarp.gui.landmark_columns import COLUMNS, column_number
-from pinwarp.gui.rename_dialog import RenameDialog
+from pinwarp.gui.table.columns import COLUMNS, column_number
+from pinwarp.gui.table.rename_dialog import RenameDialog
 from pinwarp.session import edits
 
 CONTROL, SHIFT, ALT = (

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pinwarp.gui.lengths import format_number, ticks
+from pinwarp.gui.style.lengths import format_number, ticks
 
 
 @given(st.floats(1e-6, 1e6))

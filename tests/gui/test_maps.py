@@ -14,12 +14,12 @@ from tests.gui.test_detail import large
 
 from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import Side, as_position, positions
-from pinwarp.gui.colour_scale import ColourScale
-from pinwarp.gui.map_presenter import MAP_ACTIONS
+from pinwarp.core.maps import MapKind
+from pinwarp.gui.maps.presenter import MAP_ACTIONS
+from pinwarp.gui.painted.colour_scale import ColourScale
 from pinwarp.io.samples import assets_folder
 from pinwarp.session import edits
 from pinwarp.session.guide import with_template
-from pinwarp.session.maps import MapKind
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
 SHIFT = Qt.KeyboardModifier.ShiftModifier

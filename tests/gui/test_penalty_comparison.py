@@ -12,7 +12,7 @@ from qtpy.QtTest import QTest
 from qtpy.QtWidgets import QApplication, QWidget
 
 from pinwarp.core.landmarks import Side
-from pinwarp.gui.penalty_comparison import PenaltyTrail
+from pinwarp.gui.penalty.comparison import PenaltyTrail
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 

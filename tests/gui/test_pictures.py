@@ -12,8 +12,8 @@ from qtpy.QtWidgets import QApplication
 
 from pinwarp.core.components import Components
 from pinwarp.core.landmarks import Side
-from pinwarp.gui.offscreen import Offscreen
-from pinwarp.gui.picture_dialogs import AnimationDialog, PictureDialog
+from pinwarp.gui.exporting.offscreen import Offscreen
+from pinwarp.gui.exporting.picture_dialogs import AnimationDialog, PictureDialog
 from pinwarp.session import edits
 
 DESTINATION = Side.DESTINATION

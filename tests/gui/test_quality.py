@@ -14,10 +14,10 @@ from tests.gui.test_landmark_table import NO_KEY, SHIFT, TableUser
 from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import Landmark, Side, as_position
 from pinwarp.core.spline import factorise, solve
-from pinwarp.gui import theme
-from pinwarp.gui.arrow_painting import paint_arrow
-from pinwarp.gui.landmark_columns import column_number
-from pinwarp.gui.landmark_model import SHARE
+from pinwarp.gui.painted.arrows import paint_arrow
+from pinwarp.gui.style import theme
+from pinwarp.gui.table.columns import column_number
+from pinwarp.gui.table.model import SHARE
 from pinwarp.session import edits
 
 SWAPPED = {"lateral_epicondyle", "medial_condyle_posterior"}

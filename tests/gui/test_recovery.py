@@ -15,8 +15,8 @@ from tests.gui.conftest import Driver, ScriptedDialogs, close_window, open_windo
 
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.gui.app import begin
-from pinwarp.gui.documents import Opening
-from pinwarp.gui.lost_work_dialog import (
+from pinwarp.gui.files.documents import Opening
+from pinwarp.gui.files.lost_work_dialog import (
     LostAnswer,
     LostWorkDialog,
     moment_in_words,
@@ -26,9 +26,9 @@ from pinwarp.gui.lost_work_dialog import (
 from pinwarp.io.samples import assets_folder
 from pinwarp.io.session_file import MeshReference, SessionRecord
 from pinwarp.io.work_file import UnsavedWork
-from pinwarp.session import journal
-from pinwarp.session.journal import WORK
-from pinwarp.session.recovery import LostWork
+from pinwarp.session.keeping import journal
+from pinwarp.session.keeping.journal import WORK
+from pinwarp.session.keeping.recovery import LostWork
 from pinwarp.session.session import to_record
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION

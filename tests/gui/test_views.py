@@ -11,10 +11,10 @@ from qtpy.QtWidgets import QApplication
 from pinwarp.core.alignment import Similarity, fit_similarity
 from pinwarp.core.landmarks import Landmark, Side, as_position, positions
 from pinwarp.core.mesh import Mesh
-from pinwarp.gui.camera_pose import Pose, inverse
-from pinwarp.gui.menus import shortcut_groups
-from pinwarp.gui.scale_bar import paint_scale_bar
-from pinwarp.gui.section import Section
+from pinwarp.gui.drawn.section import Section
+from pinwarp.gui.painted.scale_bar import paint_scale_bar
+from pinwarp.gui.scene.camera_pose import Pose, inverse
+from pinwarp.gui.window.menus import shortcut_groups
 from pinwarp.io.mesh_formats.ply import write_ply
 from pinwarp.io.meshes import read_mesh
 from pinwarp.io.samples import assets_folder

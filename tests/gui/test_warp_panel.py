@@ -22,7 +22,7 @@ from pinwarp.core.components import Components
 from pinwarp.core.factor import factorise
 from pinwarp.core.landmarks import Side, positions
 from pinwarp.core.spline import solve
-from pinwarp.gui.blend_player import FRAMES
+from pinwarp.gui.warp.blend_player import FRAMES
 from pinwarp.io.meshes import read_mesh
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION

@@ -19,8 +19,8 @@ from qtpy.QtTest import QTest
 
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.app import begin, make_application
-from pinwarp.gui.documents import Opening
-from pinwarp.gui.main_window import MainWindow
+from pinwarp.gui.files.documents import Opening
+from pinwarp.gui.window.main_window import MainWindow
 from pinwarp.io.session_file import SessionRecord
 from pinwarp.session import edits
 from pinwarp.session.session import to_record

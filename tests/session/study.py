@@ -10,7 +10,7 @@ from pinwarp.core.landmarks import Landmark, Role, Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.io.landmark_files import write_landmarks
 from pinwarp.io.meshes import read_mesh, write_mesh
-from pinwarp.session.files import write_session
+from pinwarp.session.keeping.files import write_session
 from pinwarp.session.session import Session
 
 PAIRS = 8

@@ -11,9 +11,9 @@ import pytest
 from tests.session.dask_processes import DaskProcesses
 
 from pinwarp.core.errors import PinwarpError
-from pinwarp.session.cluster import on_cluster
-from pinwarp.session.scheduler import address_of
-from pinwarp.session.workers import WorkEnded
+from pinwarp.session.study.cluster import on_cluster
+from pinwarp.session.study.scheduler import address_of
+from pinwarp.session.study.workers import WorkEnded
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="groups of processes are POSIX")
 pytest.importorskip("distributed")
@@ -154,7 +154,7 @@ def test_waiting_for_a_worker_can_be_stopped(dask):
 
 
 def test_a_scheduler_that_stops_answering_is_told_and_need_not_be_waited_for(dask, monkeypatch):
-    monkeypatch.setattr("pinwarp.session.crew.ANSWERS_WITHIN", SOON)
+    monkeypatch.setattr("pinwarp.session.study.crew.ANSWERS_WITHIN", SOON)
     scheduler = dask.start_scheduler()
     dask.start_worker("--no-nanny")
     stop = threading.Event()
@@ -183,7 +183,7 @@ def test_an_address_that_nobody_listens_at_is_named():
 
 
 def test_a_program_that_is_no_scheduler_is_not_waited_for(monkeypatch):
-    monkeypatch.setattr("pinwarp.session.scheduler.ANSWERS_WITHIN", SOON)
+    monkeypatch.setattr("pinwarp.session.study.scheduler.ANSWERS_WITHIN", SOON)
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
         with pytest.raises(PinwarpError, match=f"answers at {address} is no Dask scheduler"):

@@ -23,11 +23,11 @@ from pinwarp.io.meshes import MeshFile
 from pinwarp.io.session_file import read_session, write_session
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
-from pinwarp.session.exports import warped_mesh
 from pinwarp.session.guide import with_template
 from pinwarp.session.naming import names_by_pattern
-from pinwarp.session.results import WarpInputs, WarpSolver
+from pinwarp.session.outputs.exports import warped_mesh
 from pinwarp.session.session import Session, from_record, to_record
+from pinwarp.session.warp.solver import WarpInputs, WarpSolver
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
 

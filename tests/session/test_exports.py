@@ -25,15 +25,15 @@ from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.io.meshes import read_mesh
 from pinwarp.io.samples import assets_folder, sample_session
 from pinwarp.session import edits
-from pinwarp.session.exports import (
+from pinwarp.session.judging.mesh_data import warped_mesh_data
+from pinwarp.session.keeping.files import read_session
+from pinwarp.session.mesh_units import scale_side
+from pinwarp.session.outputs.exports import (
     session_coefficients,
     warped_landmarks,
     warped_mesh,
 )
-from pinwarp.session.files import read_session
-from pinwarp.session.mesh_data import warped_mesh_data
-from pinwarp.session.mesh_units import scale_side
-from pinwarp.session.script import script_of
+from pinwarp.session.outputs.script import script_of
 from pinwarp.session.session import Session
 
 

@@ -18,10 +18,11 @@ from hypothesis import strategies as st
 
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.io.session_file import MeshReference, SessionRecord, write_session
-from pinwarp.session import edits, journal
+from pinwarp.session import edits
 from pinwarp.session.editor import Editor
-from pinwarp.session.journal import WORK, Journal
-from pinwarp.session.recovery import find_lost_work, window_with
+from pinwarp.session.keeping import journal
+from pinwarp.session.keeping.journal import WORK, Journal
+from pinwarp.session.keeping.recovery import find_lost_work, window_with
 from pinwarp.session.session import Session, to_record
 
 

@@ -12,7 +12,7 @@ from pinwarp.io.landmark_files import read_landmarks
 from pinwarp.io.meshes import read_mesh
 from pinwarp.io.samples import assets_folder, sample_session
 from pinwarp.io.session_file import read_session
-from pinwarp.session.landmark_fit import Fit, fits_of, fitted
+from pinwarp.session.importing.fit import Fit, fits_of, fitted
 from pinwarp.session.session import Session
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from pinwarp.core.landmarks import Landmark, Role, Side
 from pinwarp.io.landmark_files import LandmarkReading, SkippedLine
-from pinwarp.session.landmark_fit import Fit
-from pinwarp.session.landmark_import import (
+from pinwarp.session.importing.fit import Fit
+from pinwarp.session.importing.landmarks import (
     Arriving,
     Fate,
     ImportChoice,

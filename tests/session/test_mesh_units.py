@@ -15,8 +15,8 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.io.meshes import MeshFile
 from pinwarp.io.session_file import read_session, write_session
 from pinwarp.session import edits
-from pinwarp.session.exports import warped_mesh
 from pinwarp.session.mesh_units import scale_side, size_ratio, unit_factor, unit_on
+from pinwarp.session.outputs.exports import warped_mesh
 from pinwarp.session.session import Session, from_record, to_record
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION

@@ -7,9 +7,9 @@ import pytest
 from pinwarp.core.errors import LandmarkError
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.session import edits
-from pinwarp.session.pair_names import pair_names
-from pinwarp.session.results import WarpInputs
 from pinwarp.session.session import Session
+from pinwarp.session.warp.pair_names import pair_names
+from pinwarp.session.warp.solver import WarpInputs
 
 
 @pytest.fixture

@@ -13,8 +13,8 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import PenaltyConvention, solve
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session import edits
-from pinwarp.session.results import WarpInputs, WarpSolver
 from pinwarp.session.session import Session
+from pinwarp.session.warp.solver import WarpInputs, WarpSolver
 
 
 @pytest.fixture

@@ -15,9 +15,9 @@ from pinwarp.core.factor import factorise
 from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import Landmark, as_position
 from pinwarp.core.spline import PenaltyConvention, solve
-from pinwarp.session.quality import quality_of
-from pinwarp.session.results import WarpInputs, WarpSolver
+from pinwarp.session.judging.quality import quality_of
 from pinwarp.session.session import Session
+from pinwarp.session.warp.solver import WarpInputs, WarpSolver
 
 
 def session_of(source, destination, names=None, **changes):

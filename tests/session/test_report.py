@@ -7,14 +7,14 @@ from datetime import datetime
 import numpy as np
 
 from pinwarp.core.landmarks import Side
+from pinwarp.core.maps import MapKind
 from pinwarp.io.samples import sample_session
 from pinwarp.session import edits
-from pinwarp.session.files import read_session
-from pinwarp.session.maps import MapKind
-from pinwarp.session.quality import quality_of
-from pinwarp.session.report import report_of
-from pinwarp.session.results import WarpInputs, WarpSolver
-from pinwarp.session.survey import Surveyor
+from pinwarp.session.judging.quality import quality_of
+from pinwarp.session.judging.report import report_of
+from pinwarp.session.judging.survey import Surveyor
+from pinwarp.session.keeping.files import read_session
+from pinwarp.session.warp.solver import WarpInputs, WarpSolver
 
 MADE = datetime(2026, 11, 22, 14, 3)
 

@@ -15,7 +15,7 @@ from pinwarp.core.components import Components
 from pinwarp.core.factor import factorise
 from pinwarp.core.quality import bending_energy
 from pinwarp.core.spline import solve
-from pinwarp.session.warp_figures import (
+from pinwarp.session.judging.warp_figures import (
     determined_in_words,
     figures_table,
     rms_text,

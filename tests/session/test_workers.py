@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from pinwarp.core.errors import PinwarpError
-from pinwarp.session.workers import on_this_machine
+from pinwarp.session.study.workers import on_this_machine
 
 
 def squared_unless_deadly(task):

@@ -19,15 +19,15 @@ from pinwarp.core.landmarks import Landmark, Role, Side
 from pinwarp.io.landmark_files import read_landmarks
 from pinwarp.io.manifest import read_manifest
 from pinwarp.io.meshes import read_mesh
-from pinwarp.session import batch as batches
 from pinwarp.session import edits
-from pinwarp.session.cluster import runner_of
-from pinwarp.session.files import read_session
-from pinwarp.session.landmark_conversion import frame_notes
-from pinwarp.session.scheduler import address_of
+from pinwarp.session.importing.conversion import frame_notes
+from pinwarp.session.keeping.files import read_session
 from pinwarp.session.session import Session
-from pinwarp.session.subject import Task
-from pinwarp.session.workers import cores
+from pinwarp.session.study import batch as batches
+from pinwarp.session.study.cluster import runner_of
+from pinwarp.session.study.scheduler import address_of
+from pinwarp.session.study.subject import Task
+from pinwarp.session.study.workers import cores
 
 FAILED = 1
 CLUSTER_LOST = 3

@@ -11,12 +11,12 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-import pinwarp
 from pinwarp.cli.options import SessionFile
-from pinwarp.session import check as checking
-from pinwarp.session.exports import applied_in_words
-from pinwarp.session.files import read_session
+from pinwarp.session.judging import check as checking
+from pinwarp.session.keeping.files import read_session
+from pinwarp.session.outputs.exports import applied_in_words
 from pinwarp.session.session import Session
+from pinwarp.version import __version__
 
 FLAGGED = 1
 
@@ -51,7 +51,7 @@ def check(
 
 def _about(session: Session) -> dict[str, Any]:
     return {
-        "pinwarp": pinwarp.__version__,
+        "pinwarp": __version__,
         "unit": session.unit,
         "warping_penalty": session.warping_penalty,
         "penalty_convention": session.convention.value,

@@ -7,10 +7,10 @@ from typing import Annotated
 
 import typer
 
-import pinwarp
 from pinwarp.core.components import Components
 from pinwarp.session import edits
 from pinwarp.session.session import Session
+from pinwarp.version import __version__
 
 SessionFile = Annotated[
     Path, typer.Argument(metavar="SESSION", help="A saved session (.pinwarp.csv).")
@@ -46,7 +46,7 @@ Force = Annotated[bool, typer.Option("--force", help="Replace outputs that are t
 
 def _tell_version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"pinwarp {pinwarp.__version__}")
+        typer.echo(f"pinwarp {__version__}")
         raise typer.Exit
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-from pinwarp.core.kernel import BLOCK, LARGEST_FIELD
+from pinwarp.core.blocks import BLOCK, LARGEST_FIELD
 
 # Sums in the precision of the points are added into double-precision totals after this many.
 RUN = 32

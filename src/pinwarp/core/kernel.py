@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.distance import cdist
 
+from pinwarp.core.blocks import BLOCK, LARGEST_FIELD
 from pinwarp.core.errors import LandmarkError
 
 Matrix = NDArray[np.float64]
@@ -29,11 +30,6 @@ WORTH_COMPILING = 300_000
 CHUNK = 4_000_000
 # Squares of larger coordinates overflow.
 LARGEST_COORDINATE = 1e150
-# Points are taken in blocks that stay in the first-level cache.
-BLOCK = 512
-# Fields are stored in 16 bits: the largest value of a block becomes this.
-LARGEST_FIELD = 32767.0
-
 # Below this many sums (about a millisecond) a second thread costs more to wake than it saves.
 WORTH_THREADS = 4_000_000
 

@@ -11,9 +11,9 @@ from types import MappingProxyType
 from psygnal import Signal
 
 from pinwarp.core.landmarks import Side
+from pinwarp.core.maps import MapKind, Range
 from pinwarp.session.edits import NAME_PATTERN
 from pinwarp.session.history import History
-from pinwarp.session.maps import MapKind, Range
 from pinwarp.session.session import Session
 
 

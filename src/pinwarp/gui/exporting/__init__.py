@@ -1,0 +1,1 @@
+"""What leaves: landmarks, meshes, pictures, reports."""

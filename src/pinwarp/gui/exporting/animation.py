@@ -1,0 +1,190 @@
+"""Animations: the view turned round, or the way from the aligned source to the warp."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+import pyvista as pv
+from numpy.typing import NDArray
+from qtpy.QtGui import QColor
+
+from pinwarp.core.components import Components, as_drawn
+from pinwarp.core.errors import PinwarpError
+from pinwarp.core.landmarks import Side
+from pinwarp.gui.drawn.surface import shading_normals
+from pinwarp.gui.exporting.offscreen import Offscreen, Pixels
+from pinwarp.gui.style import theme
+from pinwarp.gui.tasks.stepped_job import Steps
+from pinwarp.gui.views.canvas import Canvas
+from pinwarp.session.outputs.exports import solved
+from pinwarp.session.session import Session
+
+Vertices = NDArray[np.float32]
+
+# All frames are held until they are written: 3 bytes a pixel.
+MOST_PIXELS = 120_000_000
+_OVERLAY = "overlay"
+
+
+class Motion(StrEnum):
+    """What moves."""
+
+    TURN = "turn"
+    BLEND = "blend"
+
+
+@dataclass(frozen=True)
+class AnimationOrder:
+    """What an animation shows.
+
+    Parameters
+    ----------
+    motion
+        What moves.
+    width, height
+        In pixels.
+    frames
+        How many pictures.
+    seconds
+        How long they take, before they repeat.
+    """
+
+    motion: Motion = Motion.TURN
+    width: int = 640
+    height: int = 640
+    frames: int = 60
+    seconds: float = 4.0
+
+    @property
+    def pixels(self) -> int:
+        """Of all frames together."""
+        return self.width * self.height * self.frames
+
+
+@dataclass(frozen=True, eq=False)
+class Ends:
+    """Where a blend begins and ends, made ready in a worker.
+
+    Parameters
+    ----------
+    aligned
+        The source's vertices, aligned rigidly to the destination.
+    warped
+        The same, warped.
+    """
+
+    aligned: Vertices
+    warped: Vertices
+
+    def at(self, share: float) -> Vertices:
+        """Return the vertices on the way; the warp is linear in the blend."""
+        return (1 - share) * self.aligned + np.float32(share) * self.warped
+
+
+def ends_of(session: Session) -> Ends:
+    """Return the ends of the blend of a session's warp.
+
+    Raises
+    ------
+    PinwarpError
+        When nothing would move, or there is no warp.
+    """
+    mesh = session.mesh(Side.SOURCE)
+    if mesh is None:
+        raise PinwarpError("There is no source mesh to warp: open one first.")
+    if session.components is Components.RIGID:
+        raise PinwarpError(
+            "Only the rigid fit is applied, which is where the blend begins: nothing would move. "
+            "Choose another part in Warp > Apply."
+        )
+    warp, part = solved(session), as_drawn(session.components)
+    aligned, warped = (
+        warp.applied(part, blend).evaluate(mesh.vertices).astype(np.float32) for blend in (0, 1)
+    )
+    return Ends(aligned, warped)
+
+
+def animation_steps(order: AnimationOrder, view: Canvas, ends: Ends | None = None) -> Steps:
+    """Render an animation in small steps.
+
+    Parameters
+    ----------
+    order
+        What it shows.
+    view
+        The destination's view; copied at the first step.
+    ends
+        Of the blend, where that is what moves.
+
+    Yields
+    ------
+    share, stage
+
+    Returns
+    -------
+    list of (height, width, 3) uint8
+        The frames.
+
+    Raises
+    ------
+    PinwarpError
+        When there is too little memory, or no warped source to be blended.
+    """
+    copy = Offscreen(view, shown=(_OVERLAY,) if ends is not None else ())
+    try:
+        moves = _turns(order, copy) if ends is None else _blends(order, copy, ends)
+        frames = []
+        for number, _moved in enumerate(moves):
+            frame: Pixels = np.zeros((order.height, order.width, 4), np.uint8)
+            for tile in copy.tiles(order.width, order.height):
+                tile.put_into(frame)
+                yield (number + tile.share) / order.frames, f"rendering {number + 1}"
+            frames.append(over_background(frame))
+        return frames
+    except MemoryError as error:
+        raise PinwarpError(
+            "There is too little memory for this animation: choose a smaller size."
+        ) from error
+    finally:
+        copy.close()
+
+
+def _turns(order: AnimationOrder, copy: Offscreen) -> Iterator[None]:
+    """Turn the camera once round what it looks at, about what is up."""
+    for _ in range(order.frames):
+        yield
+        copy.camera.Azimuth(360 / order.frames)
+        copy.camera.OrthogonalizeViewUp()
+
+
+def _blends(order: AnimationOrder, copy: Offscreen, ends: Ends) -> Iterator[None]:
+    """Warp the overlay and take it back, gently at both ends."""
+    actor = copy.actors.get(_OVERLAY)
+    drawn = None if actor is None else pv.wrap(actor.GetMapper().GetInputDataObject(0, 0))
+    if drawn is None or drawn.n_points != len(ends.warped):
+        raise PinwarpError("The warped source is not drawn yet: try again once it is.")
+    if "grid" in copy.actors:
+        # It is that of the whole warp, and would stand still.
+        copy.actors["grid"].SetVisibility(False)
+    for share in (1 - np.cos(2 * np.pi * np.arange(order.frames) / order.frames)) / 2:
+        drawn.points[:] = ends.at(float(share))
+        drawn.GetPoints().Modified()
+        drawn.point_data["Normals"][:] = shading_normals(drawn)
+        drawn.GetPointData().GetNormals().Modified()
+        drawn.Modified()
+        yield
+
+
+def over_background(frame: Pixels) -> Pixels:
+    """Lay a premultiplied RGBA frame over the window's background; RGB is left."""
+    top, bottom = (
+        np.array(QColor(name).getRgb()[:3], dtype=np.float32)
+        for name in (theme.BACKGROUND_TOP, theme.BACKGROUND_BOTTOM)
+    )
+    down = np.linspace(0, 1, len(frame), dtype=np.float32)[:, None, None]
+    behind = (1 - down) * top + down * bottom
+    clear = 1 - frame[..., 3:].astype(np.float32) / 255
+    return (frame[..., :3] + clear * behind + 0.5).clip(0, 255).astype(np.uint8)

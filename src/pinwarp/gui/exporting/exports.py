@@ -1,0 +1,147 @@
+"""What leaves the program: the warped mesh, landmarks, coefficients, a script."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from pinwarp.core.landmarks import Landmark, Side
+from pinwarp.gui.style.lengths import format_length
+from pinwarp.gui.tasks.dialogs import Dialogs
+from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, MESH_FILES, FileTasks, Progress
+from pinwarp.io.atomic import write_atomically
+from pinwarp.io.coefficients import COEFFICIENT_SUFFIXES, write_coefficients
+from pinwarp.io.landmark_files import write_landmarks
+from pinwarp.io.mesh_formats.vertex_data import NO_DATA
+from pinwarp.io.meshes import NORMALS_SUFFIXES, SCALARS_SUFFIXES, write_mesh
+from pinwarp.session.editor import Editor
+from pinwarp.session.judging.mesh_data import warped_mesh_data
+from pinwarp.session.outputs.exports import (
+    applied_in_words,
+    session_coefficients,
+    warped_landmarks,
+    warped_mesh,
+    warped_passengers,
+)
+from pinwarp.session.outputs.script import script_of
+from pinwarp.session.session import Session
+
+
+class Exports:
+    """Asks for a file and writes.
+
+    Parameters
+    ----------
+    editor
+        Whose session is written.
+    tasks
+        Runs, asks and tells.
+    """
+
+    def __init__(self, editor: Editor, tasks: FileTasks[Dialogs]) -> None:
+        self._editor = editor
+        self._tasks = tasks
+
+    def export_landmarks(self, side: Side | None) -> None:
+        """Ask for a file and write the landmarks of one side, or the pairs."""
+        what = f"{side.value}" if side is not None else "pairs"
+        proposal = self._tasks.folder() / f"{what}.landmarks.csv"
+        path = self._tasks.dialogs.ask_save(f"Export {what} landmarks", LANDMARK_FILES, proposal)
+        if path is None:
+            return
+        self._write(path, lambda: self._editor.committed.landmarks, side)
+
+    def export_warped(self, *, passengers: bool) -> None:
+        """Ask for a file and write where the warp carries the passengers, or the pairs' source."""
+        what = "passengers" if passengers else "landmarks"
+        proposal = self._tasks.folder() / f"{what}_warped.landmarks.csv"
+        path = self._tasks.dialogs.ask_save(f"Export the warped {what}", LANDMARK_FILES, proposal)
+        if path is None:
+            return
+        carried = warped_passengers if passengers else warped_landmarks
+        session = self._editor.committed
+        self._write(path, lambda: carried(session), Side.DESTINATION, applied_in_words(session))
+
+    def _write(
+        self,
+        path: Path,
+        landmarks: Callable[[], Sequence[Landmark]],
+        side: Side | None,
+        what: str = "",
+    ) -> None:
+        """Write landmarks and say what the format could not hold."""
+        notes: tuple[str, ...] = ()
+
+        def write() -> None:
+            nonlocal notes
+            notes = write_landmarks(path, landmarks(), side, unit=self._editor.committed.unit)
+
+        if self._tasks.write(write, path):
+            done = f"Exported {path.name}" + (f": {what}" if what else "")
+            self._tasks.said.emit(". ".join((done, *notes)))
+
+    def export_coefficients(self) -> None:
+        """Ask for a file and write the coefficients of the warp as applied."""
+        path = self._tasks.ask_save(
+            "Export the coefficients",
+            f"{self._stem}_coefficients.json",
+            COEFFICIENT_SUFFIXES,
+            "Coefficients",
+        )
+        session = self._editor.committed
+        if path is not None and self._tasks.write(
+            lambda: write_coefficients(path, session_coefficients(session)), path
+        ):
+            self._say_exported(path, session)
+
+    def export_script(self) -> None:
+        """Ask for a file and write a script that warps the mesh again."""
+        path = self._tasks.ask_save(
+            "Export a script", f"warp_{self._stem}.py", (".py",), "Python scripts"
+        )
+        session = self._editor.committed
+        if path is not None and self._tasks.write(
+            lambda: write_atomically(path, script_of(session, path.parent)), path
+        ):
+            self._say_exported(path, session)
+
+    @property
+    def _stem(self) -> str:
+        source = self._editor.committed.source
+        return source.path.stem if source is not None else "mesh"
+
+    def _say_exported(self, path: Path, session: Session) -> None:
+        pairs = len(session.pairs)
+        penalty = f"penalty {format_length(session.warping_penalty, session.unit, 6)}"
+        what = applied_in_words(session)
+        self._tasks.said.emit(f"Exported {path.name}: {what} ({pairs} pairs, {penalty})")
+
+    def ask_and_export_mesh(self) -> None:
+        """Ask for a file and write the warped source mesh, in double precision."""
+        source = self._editor.committed.source
+        suffix = source.path.suffix if source is not None else ".stl"
+        proposal = self._tasks.folder() / f"{self._stem}_warped{suffix}"
+        path = self._tasks.dialogs.ask_save("Export the warped mesh", MESH_FILES, proposal)
+        if path is not None:
+            self.export_mesh(path)
+
+    def export_mesh(self, path: Path) -> None:
+        """Write the warped source mesh, with normals and figures where the format has room."""
+        session, suffix = self._editor.committed, path.suffix.lower()
+
+        def write(progress: Progress) -> None:
+            progress(0.05, "warping")
+            mesh, data = warped_mesh(session), NO_DATA
+            if suffix in NORMALS_SUFFIXES:
+                data = warped_mesh_data(
+                    session,
+                    mesh,
+                    scalars=suffix in SCALARS_SUFFIXES,
+                    progress=lambda share, stage: progress(0.1 + 0.7 * share, stage),
+                )
+            progress(0.8, "writing")
+            write_mesh(path, mesh, data)
+
+        self._tasks.run(
+            f"Exporting {path.name}", write, lambda _nothing: self._say_exported(path, session)
+        )

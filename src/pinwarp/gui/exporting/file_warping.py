@@ -1,0 +1,112 @@
+"""File > Warp Files: other meshes and landmarks carried through the session's warp."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pinwarp.core.errors import PinwarpError
+from pinwarp.gui.tasks.dialogs import Dialogs, Existing
+from pinwarp.gui.tasks.file_tasks import FileTasks, Progress
+from pinwarp.gui.tasks.jobs import Cancelled
+from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
+from pinwarp.io.meshes import MESH_SUFFIXES
+from pinwarp.session.editor import Editor
+from pinwarp.session.outputs.exports import applied_in_words
+from pinwarp.session.outputs.warp_files import FileWarper, WarpedFile, outputs_of, warp_each
+
+FILES = "Meshes and landmarks ({});;All files (*)".format(
+    " ".join(f"*{suffix}" for suffix in (*MESH_SUFFIXES, *LANDMARK_SUFFIXES))
+)
+
+
+class FileWarping:
+    """Asks for files and a folder, warps them, and sums up.
+
+    Parameters
+    ----------
+    editor
+        Whose warp it is.
+    tasks
+        Runs, asks and tells.
+    """
+
+    def __init__(self, editor: Editor, tasks: FileTasks[Dialogs]) -> None:
+        self._editor = editor
+        self._tasks = tasks
+
+    def ask_and_warp(self) -> None:
+        """Ask which files are warped into which folder."""
+        dialogs = self._tasks.dialogs
+        inputs = dialogs.ask_open_many("Warp files", FILES, self._tasks.folder())
+        if not inputs:
+            return
+        folder = dialogs.ask_folder("Write the warped files into", inputs[0].parent)
+        if folder is None:
+            return
+        try:
+            outputs = outputs_of(inputs, folder, kept=self._kept(), force=True)
+        except PinwarpError as error:
+            dialogs.tell_error("Cannot warp these files", str(error))
+            return
+        pairs = list(zip(inputs, outputs, strict=True))
+        existing = [path for path in outputs if path.exists()]
+        if existing:
+            answer = dialogs.ask_existing(existing)
+            if answer is Existing.CANCEL:
+                return
+            if answer is Existing.KEEP:
+                pairs = [pair for pair in pairs if not pair[1].exists()]
+        if pairs:
+            self._warp(pairs, folder)
+
+    def _kept(self) -> list[Path]:
+        """Return the files that the session is made of, which must not be replaced."""
+        session = self._editor.committed
+        files = [x.path for x in (session.source, session.destination) if x is not None]
+        return [*files, *([self._editor.path] if self._editor.path is not None else [])]
+
+    def _warp(self, pairs: list[tuple[Path, Path]], folder: Path) -> None:
+        session = self._editor.committed
+
+        def warp(progress: Progress) -> list[WarpedFile]:
+            done: list[WarpedFile] = []
+            inputs, outputs = zip(*pairs, strict=True)
+            try:
+                progress(0.0, inputs[0].name)
+                for file in warp_each(FileWarper(session), inputs, outputs):
+                    done.append(file)
+                    if len(done) < len(pairs):
+                        progress(len(done) / len(pairs), inputs[len(done)].name)
+            except Cancelled:
+                # What is written is written: the summary says how far it came.
+                return done
+            return done
+
+        def arrived(done: list[WarpedFile]) -> None:
+            self._sum_up(done, len(pairs), folder, applied_in_words(session))
+
+        self._tasks.run("Warping files", warp, arrived)
+
+    def _sum_up(self, done: list[WarpedFile], total: int, folder: Path, what: str) -> None:
+        failed = sum(bool(file.error) for file in done)
+        written = len(done) - failed
+        words = [f"{_files(written)} written to {folder}: {what}."]
+        if failed:
+            words.append(f"{_files(failed)} could not be warped.")
+        if len(done) < total:
+            words.append(f"Cancelled before the other {_files(total - len(done))}.")
+        details = "\n".join(line for file in done for line in _lines(file))
+        self._tasks.said.emit(words[0])
+        noted = any(file.notes for file in done)
+        if failed or noted or len(done) < total or total > 1:
+            self._tasks.dialogs.tell("Warped files", " ".join(words), details)
+
+
+def _files(count: int) -> str:
+    return f"{count} file" if count == 1 else f"{count} files"
+
+
+def _lines(file: WarpedFile) -> list[str]:
+    if file.error:
+        return [f"{file.source.name}: failed. {file.error}"]
+    return [f"{file.source.name} → {file.output.name}", *(f"    {note}" for note in file.notes)]

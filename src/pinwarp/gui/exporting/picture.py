@@ -1,0 +1,174 @@
+"""A picture of the views at any size: bones rendered for it, landmarks painted over them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from qtpy.QtCore import QPoint, QRect, Qt
+from qtpy.QtGui import QColor, QImage, QLinearGradient, QPainter, QRegion
+from qtpy.QtWidgets import QWidget
+
+from pinwarp.core.errors import PinwarpError
+from pinwarp.core.landmarks import Side
+from pinwarp.gui.exporting.offscreen import Offscreen, Tile
+from pinwarp.gui.painted.marker_layer import MarkerLayer
+from pinwarp.gui.style import theme
+from pinwarp.gui.tasks.stepped_job import Steps
+from pinwarp.gui.views.canvas import Canvas
+
+# Qt paints no further than this in either direction.
+LARGEST = 16_384
+# 800 MB while it is made.
+MOST_PIXELS = 200_000_000
+_FORMAT = QImage.Format.Format_RGBA8888_Premultiplied
+
+
+@dataclass(frozen=True)
+class PictureOrder:
+    """What a picture shows.
+
+    Parameters
+    ----------
+    width, height
+        In pixels.
+    sides
+        The views, from left to right.
+    landmarks
+        Whether landmarks are painted, and their arrows where the window shows them.
+    names
+        Whether those in front of the bone have their names beside them.
+    framed
+        Whether titles, scale bars and the legend of a map are painted.
+    transparent
+        Whether there is nothing behind the bones, else the window's background.
+    """
+
+    width: int = 2400
+    height: int = 1800
+    sides: tuple[Side, ...] = tuple(Side)
+    landmarks: bool = True
+    names: bool = False
+    framed: bool = True
+    transparent: bool = False
+
+
+def picture_steps(order: PictureOrder, views: Mapping[Side, Canvas]) -> Steps:
+    """Make a picture in small steps.
+
+    Parameters
+    ----------
+    order
+        What it shows.
+    views
+        What is pictured; copied at the first step.
+
+    Yields
+    ------
+    share, stage
+
+    Returns
+    -------
+    QImage
+
+    Raises
+    ------
+    PinwarpError
+        When there is too little memory for it.
+    """
+    image = QImage(order.width, order.height, _FORMAT)
+    if image.isNull():
+        raise _too_large(order)
+    image.fill(Qt.GlobalColor.transparent)
+    places = _places(order)
+    for side, place in places.items():
+        _paint_landmarks(image, order, views[side], place)
+    copies = {side: Offscreen(views[side]) for side in order.sides}
+    yield 0.0, "rendering"
+    try:
+        for number, (side, place) in enumerate(places.items()):
+            for tile in copies[side].tiles(place.width(), place.height()):
+                _paint_below(image, place, tile)
+                yield (number + tile.share) / len(places), "rendering"
+    except MemoryError as error:
+        raise _too_large(order) from error
+    finally:
+        for copy in copies.values():
+            copy.close()
+    if not order.transparent:
+        painter = _below(image)
+        painter.fillRect(image.rect(), background(order.height))
+        painter.end()
+    return image
+
+
+def _below(image: QImage) -> QPainter:
+    """Return a painter whose strokes come to lie below what is there already."""
+    painter = QPainter(image)
+    painter.setCompositionMode(QPainter.CompositionMode.CompositionMode_DestinationOver)
+    return painter
+
+
+def _paint_below(image: QImage, place: QRect, tile: Tile) -> None:
+    rows, columns = tile.pixels.shape[:2]
+    painter = _below(image)
+    painter.setClipRect(place)
+    rendered = QImage(tile.pixels.data, columns, rows, 4 * columns, _FORMAT)
+    painter.drawImage(place.topLeft() + QPoint(tile.left, tile.top), rendered)
+    painter.end()
+
+
+def background(height: int) -> QLinearGradient:
+    """Return what the window shows behind the bones, for a picture of a height."""
+    gradient = QLinearGradient(0, 0, 0, height)
+    gradient.setColorAt(0, QColor(theme.BACKGROUND_TOP))
+    gradient.setColorAt(1, QColor(theme.BACKGROUND_BOTTOM))
+    return gradient
+
+
+def _too_large(order: PictureOrder) -> PinwarpError:
+    size = f"{order.width:,} × {order.height:,}"
+    return PinwarpError(f"There is too little memory for {size} pixels: choose a smaller size.")
+
+
+def _places(order: PictureOrder) -> dict[Side, QRect]:
+    """Return where in the picture each view is."""
+    edges = np.linspace(0, order.width, len(order.sides) + 1).astype(int).tolist()
+    return {
+        side: QRect(left, 0, right - left, order.height)
+        for side, left, right in zip(order.sides, edges, edges[1:], strict=False)
+    }
+
+
+def _paint_landmarks(image: QImage, order: PictureOrder, view: Canvas, place: QRect) -> None:
+    """Paint a view's landmarks, title and scale bar as they are now."""
+    shown = view.layer
+    width, height = max(1, view.width()), max(1, view.height())
+    scale = min(place.width() / width, place.height() / height)
+    layer = MarkerLayer(view, view.side.value.capitalize())
+    layer.resize(round(place.width() / scale), round(place.height() / scale))
+    layer.offset = ((layer.width() - width) / 2, (layer.height() - height) / 2)
+    layer.pixels_per_pixel = scale / layer.devicePixelRatioF()
+    layer.framed = order.framed
+    layer.caption, layer.unit, layer.radius = shown.caption, shown.unit, shown.radius
+    if order.landmarks:
+        layer.arrows = shown.arrows
+        # What is selected just now is of no interest later; names behind the bone cover others.
+        layer.set_markers(
+            tuple(
+                replace(marker, selected=False, labelled=order.names and not hidden)
+                for marker, hidden in zip(shown.markers, shown.hidden().tolist(), strict=True)
+            )
+        )
+    painter = QPainter(image)
+    painter.translate(place.topLeft())
+    painter.scale(scale, scale)
+    layer.render(painter, QPoint(), QRegion(), QWidget.RenderFlag(0))
+    legend = view.map_legend
+    if order.framed and legend.isVisible():
+        # As far from the right edge as in the window: colours without it say little.
+        painter.translate(layer.width() - (width - legend.x()), legend.y())
+        legend.render(painter, QPoint(), QRegion(), QWidget.RenderFlag(0))
+    painter.end()
+    layer.deleteLater()

@@ -1,0 +1,245 @@
+"""Files into the session: open and import, with every question and message about them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from pinwarp.core.errors import PinwarpError, words_of
+from pinwarp.core.landmarks import Side
+from pinwarp.gui.files.file_dialogs import FileDialogs, OpenTwice
+from pinwarp.gui.files.recent_files import RecentFiles
+from pinwarp.gui.files.recovery import where_open
+from pinwarp.gui.files.saving import Saving
+from pinwarp.gui.files.session_meshes import SessionMeshes
+from pinwarp.gui.importing.imports import LandmarkImports
+from pinwarp.gui.tasks.file_tasks import (
+    MESH_FILES,
+    SESSION_FILES,
+    FileTasks,
+)
+from pinwarp.io.file_names import SESSION_SUFFIX, is_backup, is_session, session_name
+from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
+from pinwarp.io.meshes import MESH_SUFFIXES, MeshFile
+from pinwarp.io.reading import hash_of
+from pinwarp.io.session_file import read_session
+from pinwarp.session import edits
+from pinwarp.session.editor import Editor
+from pinwarp.session.keeping.recovery import OtherWindow
+from pinwarp.session.mesh_units import scale_side, size_ratio, unit_factor
+from pinwarp.session.session import Session
+
+# By what a length in metres is multiplied.
+_SMALLER = {100.0: "centimetres", 1000.0: "millimetres"}
+
+
+@dataclass(frozen=True)
+class Opening:
+    """What to open at the start."""
+
+    session: Path | None = None
+    source: Path | None = None
+    destination: Path | None = None
+    source_landmarks: Path | None = None
+    destination_landmarks: Path | None = None
+
+    @property
+    def paths(self) -> list[Path]:
+        """All of them."""
+        files = (self.session, self.source, self.destination)
+        landmarks = (self.source_landmarks, self.destination_landmarks)
+        return [path for path in (*files, *landmarks) if path is not None]
+
+
+class Documents:
+    """Carries files into the editor.
+
+    Reading runs as a job; the session changes only once everything was read, so that a bad file
+    loses nothing.
+
+    Parameters
+    ----------
+    editor
+        What is read and changed.
+    tasks
+        Runs, asks and tells.
+    recent
+        Remembers sessions.
+    saving
+        Asks about unsaved work before something else takes its place.
+    meshes
+        Reads meshes, and finds those of a session.
+    imports
+        Brings in landmarks.
+    window_with
+        Returns another living window that has a session open.
+    """
+
+    def __init__(
+        self,
+        editor: Editor,
+        tasks: FileTasks[FileDialogs],
+        recent: RecentFiles,
+        saving: Saving,
+        meshes: SessionMeshes,
+        imports: LandmarkImports,
+        window_with: Callable[[Path], OtherWindow | None],
+    ) -> None:
+        self._editor = editor
+        self._tasks = tasks
+        self._recent = recent
+        self._saving = saving
+        self._meshes = meshes
+        self._imports = imports
+        self._window_with = window_with
+
+    # Opening
+
+    def open(self, opening: Opening) -> None:
+        """Open what the command line names."""
+        if opening.session is not None:
+            self.open_session(opening.session)
+            return
+        imports = [
+            (Side.SOURCE, opening.source_landmarks),
+            (Side.DESTINATION, opening.destination_landmarks),
+        ]
+        for side, path in ((Side.SOURCE, opening.source), (Side.DESTINATION, opening.destination)):
+            if path is not None:
+                self.open_mesh(side, path)
+        # Behind the meshes in the same queue, so that everything appears in this order.
+        for side, path in imports:
+            if path is not None:
+                self._imports.bring_in(path, side, asking=False)
+
+    def open_files(self, side: Side, paths: Sequence[Path]) -> None:
+        """Open files dropped onto a viewport: a session, meshes or landmarks of that side."""
+        sessions = [path for path in paths if is_session(path)]
+        if sessions:
+            if self._saving.may_lose_changes():
+                self.open_session(sessions[0])
+            return
+        meshes = [path for path in paths if path.suffix.lower() in MESH_SUFFIXES]
+        # A second mesh belongs to the other side.
+        for mesh_side, path in zip((side, side.other), meshes, strict=False):
+            self.open_mesh(mesh_side, path)
+        others = [path for path in paths if path not in meshes]
+        for path in others:
+            if path.name.lower().endswith(LANDMARK_SUFFIXES):
+                self._imports.bring_in(path, side)
+            else:
+                suffixes = ", ".join(MESH_SUFFIXES)
+                self._tasks.dialogs.tell_error(
+                    "Cannot open this file",
+                    f"{path.name} is neither a mesh ({suffixes}) nor landmarks "
+                    f"({', '.join(LANDMARK_SUFFIXES)}) nor a session ({SESSION_SUFFIX}).",
+                )
+
+    def ask_and_open_mesh(self, side: Side) -> None:
+        """Ask for a mesh and open it."""
+        path = self._tasks.dialogs.ask_open(
+            f"Open the {side.value} mesh", MESH_FILES, self._tasks.folder()
+        )
+        if path is not None:
+            self.open_mesh(side, path)
+
+    def open_mesh(self, side: Side, path: Path) -> None:
+        """Put a mesh on one side; the landmarks stay."""
+
+        def arrived(file: MeshFile) -> None:
+            session = edits.set_mesh(self._editor.committed, side, file)
+            self._editor.commit(session, f"Open {side.value} mesh")
+            self._tasks.said.emit(_mesh_summary(file))
+            self._compare_sizes(side)
+            self._imports.check(side)
+
+        self._tasks.run(
+            f"Reading {path.name}", lambda progress: self._meshes.read(path, progress), arrived
+        )
+
+    def _compare_sizes(self, side: Side) -> None:
+        """Ask what to do where a new mesh must be in another unit than the other one."""
+        session = self._editor.committed
+        sizes = [mesh.diagonal for each in Side if (mesh := session.mesh(each)) is not None]
+        ratio, factor = size_ratio(session), unit_factor(session)
+        if ratio is None:
+            return
+        larger = Side.DESTINATION if ratio > 1 else Side.SOURCE
+        title = "Different units?"
+        text = (
+            f"The {larger.value} is {max(sizes) / min(sizes):,.0f} times as large as the "
+            f"{larger.other.value}: {max(sizes):.4g} and {min(sizes):.4g} across."
+        )
+        left = (
+            "Left as they are, the warp takes care of it, and what is exported is in the "
+            "destination's unit."
+        )
+        if factor is None:
+            self._tasks.dialogs.tell(title, f"{text}\n\n{left}")
+            return
+        # The new one first: what was there before stays as it is.
+        factors = {Side.SOURCE: factor, Side.DESTINATION: 1 / factor}
+        sides = (side, side.other)
+        answer = self._tasks.dialogs.ask_choice(
+            title,
+            text,
+            f"One seems to be in metres and the other in {_SMALLER[max(factor, 1 / factor)]}. "
+            "Scaling takes the landmarks of that side along; the file stays as it is, and the "
+            f"session remembers the factor.\n\n{left}",
+            [
+                *(f"Scale the {each.value.capitalize()} {_by(factors[each])}" for each in sides),
+                "Leave Both",
+            ],
+        )
+        if answer < len(sides):
+            chosen = sides[answer]
+            scaled = scale_side(self._editor.committed, chosen, factors[chosen])
+            self._editor.commit(scaled, f"Scale {chosen.value} {_by(factors[chosen])}")
+
+    def ask_and_open_session(self) -> None:
+        """Ask for a session and open it."""
+        if not self._saving.may_lose_changes():
+            return
+        path = self._tasks.dialogs.ask_open("Open a session", SESSION_FILES, self._tasks.folder())
+        if path is not None:
+            self.open_session(path)
+
+    def open_session(self, path: Path, *, as_new: bool = False) -> None:
+        """Open a session with its meshes; ``as_new`` forgets where it came from."""
+        # Saving to a backup would lose what it is kept for.
+        as_new = as_new or is_backup(path)
+        if not as_new and (other := self._window_with(path)) is not None:
+            name = session_name(path)
+            match self._tasks.dialogs.ask_open_twice(name, where_open(other)):
+                case OpenTwice.CANCEL:
+                    return
+                case OpenTwice.COPY:
+                    as_new = True
+        # Before the reading: what is written in between is then noticed when saving.
+        sha256 = hash_of(path)
+        try:
+            record = read_session(path)
+        except (PinwarpError, OSError) as error:
+            self._tasks.dialogs.tell_error("Cannot open the session", words_of(error))
+            return
+
+        def arrived(session: Session) -> None:
+            if as_new:
+                self._editor.replace_all(session, None)
+            else:
+                self._editor.replace_all(session, path, sha256=sha256)
+                self._recent.add(path)
+            self._tasks.said.emit(f"Opened {path.name}: {len(session.pairs)} pairs")
+
+        self._meshes.open(record, path.parent, f"Opening {path.name}", arrived)
+
+
+def _mesh_summary(file: MeshFile) -> str:
+    mesh = file.mesh
+    text = f"{file.path.name}: {len(mesh.vertices):,} vertices, {len(mesh.faces):,} triangles"
+    return "; ".join((text, *file.notes))
+
+
+def _by(factor: float) -> str:
+    return f"by {factor:,.0f}" if factor > 1 else f"by 1/{1 / factor:,.0f}"

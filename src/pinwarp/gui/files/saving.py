@@ -1,0 +1,95 @@
+"""Saving the session, and asking before unsaved work or another file would be lost."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pinwarp.core.errors import words_of
+from pinwarp.gui.files.file_dialogs import Answer, FileDialogs, Overwrite
+from pinwarp.gui.files.recent_files import RecentFiles
+from pinwarp.gui.tasks.file_tasks import SESSION_FILES, FileTasks
+from pinwarp.io.backup import write_keeping_previous
+from pinwarp.io.file_names import SESSION_SUFFIX, is_session, session_name
+from pinwarp.io.reading import hash_of
+from pinwarp.io.session_file import write_session
+from pinwarp.session.editor import Editor
+from pinwarp.session.session import to_record
+
+
+class Saving:
+    """Writes the session where the user wants it.
+
+    Parameters
+    ----------
+    editor
+        What is saved.
+    tasks
+        Writes, asks and tells.
+    recent
+        Remembers sessions.
+    """
+
+    def __init__(self, editor: Editor, tasks: FileTasks[FileDialogs], recent: RecentFiles) -> None:
+        self._editor = editor
+        self._tasks = tasks
+        self._recent = recent
+
+    def may_lose_changes(self) -> bool:
+        """Ask about unsaved changes; False when the user would rather stay."""
+        if not self._editor.is_dirty:
+            return True
+        answer = self._tasks.dialogs.ask_unsaved(session_name(self._editor.path))
+        if answer is Answer.SAVE:
+            return self.save()
+        return answer is Answer.DISCARD
+
+    def save(self) -> bool:
+        """Save where the session came from, or ask; say whether it was saved."""
+        path, known = self._editor.path, self._editor.file_sha256
+        if path is None:
+            return self.save_as()
+        if known is not None and hash_of(path) not in (known, None):
+            return self._overwrite(
+                path, "was changed by another program or window after it was opened here"
+            )
+        return self._save_to(path)
+
+    def save_as(self) -> bool:
+        """Ask where to save; say whether it was saved."""
+        proposal = self._editor.path or self._tasks.folder() / f"untitled{SESSION_SUFFIX}"
+        asked = self._tasks.dialogs.ask_save("Save the session", SESSION_FILES, proposal)
+        if asked is None:
+            return False
+        if is_session(asked):
+            return self._save_to(asked)
+        path = asked.with_name(asked.name.removesuffix(".csv") + SESSION_SUFFIX)
+        # The file dialog has asked about another name.
+        return self._overwrite(path, "is there already") if path.exists() else self._save_to(path)
+
+    def _overwrite(self, path: Path, reason: str) -> bool:
+        match self._tasks.dialogs.ask_overwrite(path.name, reason):
+            case Overwrite.OVERWRITE:
+                return self._save_to(path)
+            case Overwrite.SAVE_AS:
+                return self.save_as()
+            case _:
+                return False
+
+    def _save_to(self, path: Path) -> bool:
+        record = to_record(self._editor.committed)
+        unkept: list[OSError | None] = []
+
+        def write() -> None:
+            unkept.append(write_keeping_previous(path, lambda path: write_session(path, record)))
+
+        if not self._tasks.write(write, path):
+            return False
+        self._editor.mark_saved(path, hash_of(path))
+        self._recent.add(path)
+        problem = unkept[0]
+        self._tasks.said.emit(
+            f"Saved {path.name}"
+            if problem is None
+            else f"Saved {path.name}, but not its previous version: {words_of(problem)}"
+        )
+        return True

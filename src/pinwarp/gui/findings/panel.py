@@ -1,0 +1,342 @@
+"""The list of what was noticed about the pairs, below the table: what to check, and remedies."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from qtpy.QtCore import QEvent, QObject, QSize, Qt, Signal
+from qtpy.QtGui import QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPalette, QResizeEvent
+from qtpy.QtWidgets import (
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QMenu,
+    QPushButton,
+    QScrollArea,
+    QSizePolicy,
+    QStyle,
+    QStyleOptionFocusRect,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from pinwarp.core.findings import FindingKind
+from pinwarp.gui.style import theme
+from pinwarp.gui.style.icons import kept_icon
+from pinwarp.session.judging.quality import NamedFinding
+
+# Both of these may be wrong; of others one is enough.
+_BOTH = (FindingKind.SWAPPED, FindingKind.INCONSISTENT)
+# Longer words than this are broken anywhere.
+_LONGEST_WORD = 24
+_SIGN = 16
+_PRESSING = (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Space)
+
+
+class FindingRow(QFrame):
+    """One finding: a sign, a sentence, and what can be done about it."""
+
+    chosen = Signal()
+    swap_requested = Signal()
+    mirror_requested = Signal()
+    disable_requested = Signal(list)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: NamedFinding | None = None
+        self._current = False
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setCursor(Qt.CursorShape.PointingHandCursor)
+        self.sign = QLabel()
+        self.sign.setFixedWidth(_SIGN)
+        self.sentence = QLabel()
+        self.sentence.setTextFormat(Qt.TextFormat.PlainText)
+        self.sentence.setWordWrap(True)
+        self.sentence.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self.sentence.setAlignment(Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignLeft)
+        self.remedy = QPushButton()
+        self.remedy.clicked.connect(self._on_remedy)
+        self.disable = QPushButton("Disable")
+        self.disable.clicked.connect(self._on_disable)
+        self.choice = QMenu(self.disable)
+        self._lay_out()
+
+    def _lay_out(self) -> None:
+        buttons = QVBoxLayout()
+        buttons.setSpacing(2)
+        for button in (self.remedy, self.disable):
+            button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+            button.setCursor(Qt.CursorShape.ArrowCursor)
+            button.installEventFilter(self)
+            buttons.addWidget(button)
+        buttons.addStretch()
+        row = QHBoxLayout(self)
+        row.setContentsMargins(6, 4, 4, 4)
+        row.setSpacing(6)
+        row.addWidget(self.sign, 0, Qt.AlignmentFlag.AlignTop)
+        row.addWidget(self.sentence, 1)
+        row.addLayout(buttons)
+
+    def show_finding(self, found: NamedFinding, mirror_axis: str) -> None:
+        """Show a finding; the axis is the one to mirror across, empty where that cannot be."""
+        kind, names, grave = found.finding.kind, found.names, found.finding.is_grave
+        remedy, tip = "", ""
+        if kind is FindingKind.SWAPPED:
+            remedy, tip = "Swap", f"Exchange the destinations of {' and '.join(names)}"
+        elif kind is FindingKind.MIRRORED and mirror_axis:
+            remedy = f"Mirror Across {mirror_axis.upper()}"
+            tip = f"Mirror the source across {mirror_axis}: a left bone becomes a right one"
+        self._show_button(self.remedy, remedy, tip)
+        self._show_button(
+            self.disable,
+            "Disable" if names and grave else "",
+            f"Let {names[0]} take no part" if len(names) == 1 else "Let one of them take no part",
+        )
+        if self.found is None or (names, kind) != (self.found.names, self.found.finding.kind):
+            self._fill_choice(names, kind)
+        if self.found is None or found.sentence != self.found.sentence:
+            self.sentence.setText(_breakable(found.sentence))
+            self.setAccessibleName(found.sentence)
+        self.found = found
+        palette = self.palette()
+        if not grave:
+            palette.setColor(QPalette.ColorRole.WindowText, theme.quiet_text_colour())
+        self.sentence.setPalette(palette)
+        sign = (
+            kept_icon("warning", theme.WARNING_COLOUR)
+            if grave
+            else kept_icon("isolated", theme.QUIET_INK)
+        )
+        self.sign.setPixmap(sign.pixmap(QSize(_SIGN, _SIGN)))
+
+    @staticmethod
+    def _show_button(button: QPushButton, words: str, tip: str) -> None:
+        button.setVisible(bool(words))
+        button.setText(words)
+        button.setToolTip(tip)
+
+    def _fill_choice(self, names: Sequence[str], kind: FindingKind) -> None:
+        self.choice.clear()
+        several = len(names) > 1
+        self.disable.setMenu(self.choice if several else None)
+        choices = [(name.replace("&", "&&"), [name]) for name in names]
+        if kind in _BOTH:
+            choices.append(("&Both", list(names)))
+        for words, chosen in choices:
+            action = self.choice.addAction(words)
+            action.triggered.connect(
+                lambda _checked=False, chosen=chosen: self.disable_requested.emit(chosen)
+            )
+
+    def set_current(self, current: bool) -> None:
+        """Say whether its landmarks are the selected ones."""
+        if current != self._current:
+            self._current = current
+            self.update()
+
+    def _on_remedy(self) -> None:
+        if self.found is not None and self.found.finding.kind is FindingKind.SWAPPED:
+            self.swap_requested.emit()
+        else:
+            self.mirror_requested.emit()
+
+    def _on_disable(self) -> None:
+        if self.found is not None and len(self.found.names) == 1:
+            self.disable_requested.emit(list(self.found.names))
+
+    def event(self, event: QEvent) -> bool:
+        """Take Space and Enter before the window does."""
+        if event.type() == QEvent.Type.ShortcutOverride and event.key() in _PRESSING:
+            event.accept()
+            return True
+        return bool(super().event(event))
+
+    def eventFilter(self, button: QObject, event: QEvent) -> bool:
+        """Let Space and Enter press the buttons."""
+        kind = event.type()
+        if (
+            kind not in (QEvent.Type.ShortcutOverride, QEvent.Type.KeyPress)
+            or event.key() not in _PRESSING
+        ):
+            return bool(super().eventFilter(button, event))
+        event.accept()
+        if kind == QEvent.Type.KeyPress:
+            button.click()
+        return True
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Choose the finding."""
+        if event.button() == Qt.MouseButton.LeftButton:
+            self.chosen.emit()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Choose the finding by Enter or Space; the arrows go to its neighbours."""
+        match event.key():
+            case key if key in _PRESSING:
+                self.chosen.emit()
+            case Qt.Key.Key_Down | Qt.Key.Key_Up:
+                self._neighbour(1 if event.key() == Qt.Key.Key_Down else -1).setFocus()
+            case _:
+                event.ignore()
+
+    def _neighbour(self, step: int) -> FindingRow:
+        rows = [row for row in self.parent().findChildren(FindingRow) if row.isVisible()]
+        return rows[min(max(rows.index(self) + step, 0), len(rows) - 1)]
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Show which one is selected, and where the keys go."""
+        super().paintEvent(event)
+        painter = QPainter(self)
+        if self._current:
+            shade = self.palette().color(QPalette.ColorRole.Highlight)
+            shade.setAlphaF(0.16)
+            painter.fillRect(self.rect(), shade)
+        if self.hasFocus():
+            option = QStyleOptionFocusRect()
+            option.initFrom(self)
+            option.rect = self.rect().adjusted(1, 1, -1, -1)
+            element = QStyle.PrimitiveElement.PE_FrameFocusRect
+            self.style().drawPrimitive(element, option, painter, self)
+        painter.end()
+
+
+class FindingsPanel(QWidget):
+    """The findings, the gravest first; hidden where there is nothing to say."""
+
+    chosen = Signal(object)
+    swap_requested = Signal(object)
+    mirror_requested = Signal(str)
+    disable_requested = Signal(object, list)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._room = 0
+        self._axis = ""
+        self._found: tuple[NamedFinding, ...] = ()
+        self._rows: list[FindingRow] = []
+        self.header = QToolButton()
+        self.header.setAutoRaise(True)
+        self.header.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        self.header.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.header.setToolTip("Show or hide what was noticed about the pairs")
+        self._content = QWidget()
+        self._column = QVBoxLayout(self._content)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.setSpacing(0)
+        self.scroll = QScrollArea()
+        self.scroll.setWidgetResizable(True)
+        self.scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.scroll.setWidget(self._content)
+        self.header.clicked.connect(lambda: self.set_open(self.scroll.isHidden()))
+        self._content.setBackgroundRole(QPalette.ColorRole.Base)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self.header)
+        column.addWidget(self.scroll)
+        self.set_open(True)
+        self.hide()
+
+    @property
+    def rows(self) -> list[FindingRow]:
+        """The rows that are filled, from the top."""
+        return self._rows[: len(self._found)]
+
+    def show_findings(self, found: Sequence[NamedFinding], mirror_axis: str = "") -> None:
+        """Show these findings.
+
+        Parameters
+        ----------
+        found
+            The gravest first.
+        mirror_axis
+            Across which axis the source can be mirrored, if it is asked for.
+        """
+        if (tuple(found), mirror_axis) == (self._found, self._axis):
+            return
+        self._found, self._axis = tuple(found), mirror_axis
+        while len(self._rows) < len(found):
+            self._add_row()
+        for row, one in zip(self._rows, found, strict=False):
+            row.show_finding(one, mirror_axis)
+        for i, row in enumerate(self._rows):
+            row.setVisible(i < len(found))
+        self.header.setText(heading(found))
+        font = self.font()
+        font.setBold(any(one.finding.is_grave for one in found))
+        self.header.setFont(font)
+        self.setVisible(bool(found))
+        self._fit()
+
+    def _add_row(self) -> None:
+        row = FindingRow()
+        self._rows.append(row)
+        self._column.addWidget(row)
+        row.chosen.connect(lambda: self.chosen.emit(row.found))
+        row.swap_requested.connect(lambda: self.swap_requested.emit(row.found))
+        row.mirror_requested.connect(lambda: self.mirror_requested.emit(self._axis))
+        row.disable_requested.connect(lambda names: self.disable_requested.emit(row.found, names))
+
+    def show_selection(self, names: Sequence[str]) -> None:
+        """Mark the finding whose landmarks are selected."""
+        for row in self.rows:
+            concerned = row.found.names if row.found is not None else ()
+            row.set_current(bool(concerned) and set(concerned) == set(names))
+
+    def focus_row(self, number: int) -> None:
+        """Let the keys go to a finding."""
+        self.set_open(True)
+        self._rows[number].setFocus()
+        self.scroll.ensureWidgetVisible(self._rows[number], 0, 0)
+
+    def set_room(self, height: int) -> None:
+        """Take no more than this height; what does not fit is scrolled."""
+        self._room = height
+        self._fit()
+
+    def _fit(self) -> None:
+        # Not the viewport's width, which follows only later.
+        frame = 2 * self.scroll.frameWidth()
+        needed = self._content.heightForWidth(self.width() - frame) + frame
+        left = max(self._room - self.header.sizeHint().height(), 0)
+        self.scroll.setFixedHeight(min(needed, left))
+
+    def set_open(self, shown: bool) -> None:
+        """Show the findings, or only how many there are."""
+        arrow = Qt.ArrowType.DownArrow if shown else Qt.ArrowType.RightArrow
+        self.header.setArrowType(arrow)
+        self.scroll.setVisible(shown)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Wrap the sentences anew."""
+        super().resizeEvent(event)
+        self._fit()
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Keep up with another font."""
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self._fit()
+
+
+def heading(found: Sequence[NamedFinding]) -> str:
+    """Return how many findings there are, in words.
+
+    Examples
+    --------
+    >>> from pinwarp.core.findings import Finding
+    >>> kinds = (FindingKind.SUSPECT, FindingKind.ISOLATED, FindingKind.ISOLATED)
+    >>> heading([NamedFinding(Finding(kind, (0,), 1.0), ("a",), "") for kind in kinds])
+    '1 to check, 2 isolated'
+    """
+    grave = sum(one.finding.is_grave for one in found)
+    counts = ((grave, "to check"), (len(found) - grave, "isolated"))
+    return ", ".join(f"{count} {words}" for count, words in counts if count)
+
+
+def _breakable(text: str) -> str:
+    """Let words that are too long for a line be broken, by spaces of no width."""
+    return re.sub(rf"(\S{{{_LONGEST_WORD}}})(?=\S)", "\\1\u200b", text)

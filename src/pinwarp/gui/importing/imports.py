@@ -1,0 +1,202 @@
+"""Landmark files into the session, with a look at what they hold before anything changes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from pinwarp.core.landmarks import Side
+from pinwarp.core.mesh import Mesh
+from pinwarp.core.surface_distance import SurfaceIndex
+from pinwarp.gui.importing.import_dialogs import ImportDialogs
+from pinwarp.gui.style.lengths import distance_from_mesh
+from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, FileTasks, Progress
+from pinwarp.io.landmark_files import LandmarkReading, read_landmarks
+from pinwarp.session.editor import Editor
+from pinwarp.session.importing.fit import Fit, fits_of, fitted
+from pinwarp.session.importing.landmarks import (
+    Arriving,
+    ImportChoice,
+    Pairing,
+    default_pairing,
+    imported,
+    is_plain,
+)
+from pinwarp.session.mesh_units import unit_on
+
+
+class LandmarkImports:
+    """Reads landmark files, asks where there is something to ask, and brings them in.
+
+    Parameters
+    ----------
+    editor
+        What is read and changed.
+    tasks
+        Runs, asks and tells.
+    """
+
+    def __init__(self, editor: Editor, tasks: FileTasks[ImportDialogs]) -> None:
+        self._editor = editor
+        self._tasks = tasks
+        # While one file is asked about, the next ones wait: they may match what it brings.
+        self._waiting: list[tuple[Arriving, bool]] = []
+        self._is_deciding = False
+
+    def ask(self, side: Side | None) -> None:
+        """Ask for a landmark file and import it; without a side it must hold pairs."""
+        what = f"{side.value} landmarks" if side is not None else "landmark pairs"
+        path = self._tasks.dialogs.ask_open(f"Import {what}", LANDMARK_FILES, self._tasks.folder())
+        if path is not None:
+            self.bring_in(path, side)
+
+    def bring_in(self, path: Path, side: Side | None, *, asking: bool = True) -> None:
+        """Import landmarks for one side, or pairs where the file holds pairs.
+
+        Parameters
+        ----------
+        path, side
+            The file, and the side it belongs to.
+        asking
+            Whether to ask before, where there is something to ask; else it is told after.
+        """
+
+        def arrived(reading: LandmarkReading) -> None:
+            if side is None and not reading.is_pairs:
+                self._tasks.dialogs.tell_error(
+                    "These are not pairs",
+                    f"{path.name} holds positions for one mesh only: import it as source or "
+                    "destination landmarks.",
+                )
+                return
+            self._compare(Arriving(path, reading, None if reading.is_pairs else side), asking)
+
+        chosen = side or Side.SOURCE
+        self._tasks.run(
+            f"Reading {path.name}", lambda _progress: read_landmarks(path, chosen), arrived
+        )
+
+    def _compare(self, arriving: Arriving, asking: bool) -> None:
+        """Compare positions with the meshes, which were read by now."""
+        session, reading = self._editor.committed, arriving.reading
+        meshes = {side: session.mesh(side) for side in arriving.sides}
+
+        def compare(progress: Progress) -> Mapping[Side, tuple[Fit, ...]]:
+            progress(0.5, "comparing with the mesh")
+            return {
+                side: fits_of(reading.landmarks, side, SurfaceIndex(mesh))
+                for side, mesh in meshes.items()
+                if mesh is not None
+            }
+
+        def arrived(fits: Mapping[Side, tuple[Fit, ...]]) -> None:
+            if not all(self._is_still(side, mesh) for side, mesh in meshes.items()):
+                self._compare(arriving, asking)
+                return
+            found = Arriving(arriving.path, reading, arriving.side, fits)
+            self._waiting.append((found, asking))
+            self._decide_all()
+
+        self._tasks.run(f"Reading {arriving.path.name}", compare, arrived)
+
+    def _decide_all(self) -> None:
+        if self._is_deciding:
+            return
+        self._is_deciding = True
+        try:
+            while self._waiting:
+                self._decide(*self._waiting.pop(0))
+        finally:
+            self._is_deciding = False
+
+    def _decide(self, arriving: Arriving, asking: bool) -> None:
+        session = self._editor.committed
+        plain = is_plain(session, arriving)
+        choice: ImportChoice | None = ImportChoice(default_pairing(session, arriving))
+        if asking and not plain:
+            choice = self._tasks.dialogs.ask_import(session, arriving)
+        if choice is None:
+            self._tasks.said.emit("Cancelled; nothing was changed")
+            return
+        # Meshes may have arrived while the question was open.
+        session = imported(self._editor.committed, arriving, choice)
+        self._editor.commit(session, arriving.label)
+        self._tasks.said.emit(_report(arriving, choice))
+        if not asking:
+            self._tell_after(arriving)
+
+    def _tell_after(self, arriving: Arriving) -> None:
+        """Tell what nobody was asked about before."""
+        reading = arriving.reading
+        if reading.skipped:
+            number = len(reading.skipped)
+            self._tasks.dialogs.tell(
+                "Some lines were skipped",
+                f"{_count(reading)} read from {arriving.path.name}; "
+                f"{number:,} line{' was' if number == 1 else 's were'} skipped.",
+                "\n".join(
+                    f"Line {line.line}: {line.reason}\n    {line.text}" for line in reading.skipped
+                ),
+            )
+        for side in arriving.doubtful:
+            self._offer(side, arriving.fits[side], reading.frame)
+
+    # Landmarks that were there before their mesh
+
+    def check(self, side: Side) -> None:
+        """Look whether the landmarks of a side lie on the mesh that was opened, and offer help."""
+        session = self._editor.committed
+        mesh = session.mesh(side)
+        if mesh is None or all(x.position(side) is None for x in session.landmarks):
+            return
+        landmarks = session.landmarks
+
+        def compare(progress: Progress) -> tuple[Fit, ...]:
+            progress(0.5, "comparing with the landmarks")
+            return fits_of(landmarks, side, SurfaceIndex(mesh))
+
+        def arrived(fits: tuple[Fit, ...]) -> None:
+            if len(fits) > 1 and self._is_still(side, mesh):
+                self._offer(side, fits)
+
+        self._tasks.run(f"Comparing the {side.value} landmarks", compare, arrived)
+
+    def _is_still(self, side: Side, mesh: Mesh | None) -> bool:
+        return self._editor.committed.mesh(side) is mesh
+
+    def _offer(self, side: Side, fits: tuple[Fit, ...], frame: str = "") -> None:
+        """Offer to read the landmarks of a side in another way."""
+        session = self._editor.committed
+        mesh, unit = session.mesh(side), unit_on(session, side)
+        size = mesh.diagonal if mesh is not None else 0.0
+        figures = [
+            (fit.describe(frame), distance_from_mesh(fit.distance, size, unit)) for fit in fits
+        ]
+        answer = self._tasks.dialogs.ask_choice(
+            "Landmarks far from their mesh",
+            f"The {side.value} landmarks lie {figures[0][1]} in the median: they may be in another "
+            "frame or unit.",
+            "\n".join(f"{words}: {length}." for words, length in figures),
+            [*(fit.action for fit in fits[1:]), "Leave As They Are"],
+        )
+        if answer < len(fits) - 1:
+            session = fitted(self._editor.committed, side, fits[answer + 1])
+            self._editor.commit(session, f"Correct {side.value} landmarks")
+
+
+def _report(arriving: Arriving, choice: ImportChoice) -> str:
+    """Say in one line what was brought in, and how."""
+    reading = arriving.reading
+    how = "" if choice.pairing is Pairing.BY_NAME else f", {choice.pairing.value}"
+    parts = [f"{_count(reading)} from {arriving.path.name} ({reading.format}){how}"]
+    parts += [
+        f"{side.value.capitalize()}: {fit.describe(reading.frame)}"
+        for side, fit in choice.fits.items()
+        if not fit.is_as_stored
+    ]
+    return ". ".join((*parts, *reading.notes))
+
+
+def _count(reading: LandmarkReading) -> str:
+    what = "pair" if reading.is_pairs else "landmark"
+    return f"{reading.count:,} {what}{'' if reading.count == 1 else 's'}"

@@ -1,0 +1,59 @@
+"""What the maps are called and what they mean, for menu, legend and panel."""
+
+from __future__ import annotations
+
+from pinwarp.core.maps import MapKind, SurfaceMap
+
+TITLES = {
+    MapKind.DISTANCE: "Distance to the destination",
+    MapKind.VOLUME: "Volume change",
+    MapKind.LARGEST_STRETCH: "Largest stretch",
+    MapKind.SMALLEST_STRETCH: "Smallest stretch",
+    MapKind.UNCERTAINTY: "Uncertainty of the warp",
+}
+MEANINGS = {
+    None: "Colour the warped source by how well it fits, how it is deformed, or how sure it is.",
+    MapKind.DISTANCE: (
+        "How far the two surfaces lie apart: from every vertex of one to the nearest place on "
+        "the other. The colours show the way from source to destination."
+    ),
+    MapKind.VOLUME: (
+        "How the volume around a place changes: 1 keeps it, ½ halves it, 0 or less folds the "
+        "surface (determinant of the warp's derivative)."
+    ),
+    MapKind.LARGEST_STRETCH: (
+        "How much longer a short line on the source becomes, in the direction that is stretched "
+        "most: 1 keeps its length."
+    ),
+    MapKind.SMALLEST_STRETCH: (
+        "How much longer a short line on the source becomes, in the direction that is stretched "
+        "least: below 1 it is squeezed."
+    ),
+    MapKind.UNCERTAINTY: (
+        "Standard deviation of one coordinate of the full warp, told from how well the pairs "
+        "foretell one another: largest where landmarks are far away."
+    ),
+}
+
+
+def note_of(found: SurfaceMap, unit: str) -> str:
+    """Return the unit of a map, or what its ratios are relative to."""
+    if found.kind is MapKind.UNCERTAINTY:
+        return f"± {unit}"
+    if not found.kind.is_ratio:
+        return f"in {unit}"
+    if found.overall == 1:
+        return ""
+    return f"relative to the overall size (lengths × {found.overall:.3g})"
+
+
+def figure(value: float, unit: str = "") -> str:
+    """Return a figure of a map in three digits.
+
+    Examples
+    --------
+    >>> figure(2.2493, "mm"), figure(0.00763, "m"), figure(12345.6)
+    ('2.25 mm', '0.00763 m', '12346')
+    """
+    text = f"{value:.0f}" if abs(value) >= 1000 else f"{value:#.3g}".rstrip(".")
+    return f"{text} {unit}".rstrip()

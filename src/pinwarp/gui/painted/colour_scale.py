@@ -1,0 +1,106 @@
+"""Which colour stands for which value of a map, and what the legend writes beside it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkLookupTable
+
+from pinwarp.core.maps import MapKind, Range
+from pinwarp.gui.style import theme
+from pinwarp.gui.style.lengths import round_length
+
+STEPS = 256
+# A legend of ratios that reaches further than so many doublings is written in powers of two.
+POWERS_FROM = 0.9
+_FRACTIONS = {-1: "½", -2: "¼", -3: "⅛"}
+
+
+@dataclass(frozen=True)
+class ColourScale:
+    """The colours of one map between two values.
+
+    Parameters
+    ----------
+    kind
+        Lengths run from dark to light; ratios from blue to orange, neutral at 1.
+    range
+        The lowest and the highest value shown; what lies beyond takes the colour of the end.
+
+    Examples
+    --------
+    >>> scale = ColourScale(MapKind.VOLUME, (0.25, 4.0))
+    >>> [tick.text for tick in scale.ticks()]
+    ['¼', '½', '1', '2', '4']
+    """
+
+    kind: MapKind
+    range: Range
+
+    @property
+    def ends(self) -> Range:
+        """The range on the scale that is drawn: doublings for ratios."""
+        low, high = self.kind.levels(np.array(self.range))
+        return float(low), float(high)
+
+    def colours(self, levels: ArrayLike) -> NDArray[np.uint8]:
+        """Return the (k, 3) colours of levels."""
+        low, high = self.ends
+        if self.kind.is_ratio:
+            # As far up as down, so that 1 is neutral whatever the range.
+            reach = max(abs(low), abs(high))
+            low, high = -reach, reach
+            anchors = theme.DIVERGING_COLOURS
+        else:
+            anchors = theme.SEQUENTIAL_COLOURS
+        known = np.array([[int(name[i : i + 2], 16) for i in (1, 3, 5)] for name in anchors])
+        places = np.linspace(low, high, len(anchors))
+        columns = [np.interp(np.asarray(levels), places, channel) for channel in known.T]
+        return np.round(np.column_stack(columns)).astype(np.uint8)
+
+    def table(self) -> vtkLookupTable:
+        """Return the colours as VTK looks them up, by level."""
+        colours = np.full((STEPS, 4), 255, dtype=np.uint8)
+        colours[:, :3] = self.colours(np.linspace(*self.ends, STEPS))
+        table = vtkLookupTable()
+        table.SetTable(numpy_to_vtk(colours, deep=True))
+        table.SetTableRange(*self.ends)
+        return table
+
+    def ticks(self) -> list[Tick]:
+        """Return the values to be written beside the colours, the lowest first."""
+        low, high = self.ends
+        if self.kind.is_ratio and max(abs(low), abs(high)) > POWERS_FROM:
+            step = max(1, math.ceil((high - low) / 8))
+            powers = range(math.ceil(low - 1e-6), math.floor(high + 1e-6) + 1)
+            found = [(float(power), _power_text(power)) for power in powers if power % step == 0]
+        else:
+            values = _round_values(*self.range)
+            levels = self.kind.levels(np.array(values)).tolist()
+            found = list(zip(levels, [f"{value:.6g}" for value in values], strict=True))
+        return [Tick((level - low) / (high - low), text) for level, text in found]
+
+
+@dataclass(frozen=True)
+class Tick:
+    """A value on a legend: its share of the way up, and what is written there."""
+
+    share: float
+    text: str
+
+
+def _power_text(power: int) -> str:
+    if power >= 0:
+        return f"{2**power}"
+    return _FRACTIONS.get(power, f"1/{2**-power}")
+
+
+def _round_values(low: float, high: float) -> list[float]:
+    """Return round numbers from low to high, five to ten of them."""
+    step = round_length((high - low) / 4)
+    first, last = math.ceil(low / step - 1e-6), math.floor(high / step + 1e-6)
+    return [i * step for i in range(first, last + 1)]

@@ -1,0 +1,1 @@
+"""The warping penalty: slider, curve, comparison, snapshots."""

@@ -1,0 +1,119 @@
+"""Compares the penalty with the previous one: for as long as B is held, or by taking it back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from qtpy.QtCore import QObject, Qt
+from qtpy.QtGui import QAction, QKeySequence, QShortcut
+from qtpy.QtWidgets import QWidget
+
+from pinwarp.gui.painted.marker_layer import MarkerLayer
+from pinwarp.gui.penalty.passing_preview import PassingPreview
+from pinwarp.gui.style.lengths import format_length
+from pinwarp.session import edits
+from pinwarp.session.editor import Editor
+from pinwarp.session.session import Session
+
+_NONE_YET = "There is no previous penalty yet: change the penalty, then hold B to compare."
+
+
+class PenaltyTrail:
+    """Remembers which penalty was committed before the present one, also by undo and redo.
+
+    Examples
+    --------
+    >>> editor = Editor()
+    >>> trail = PenaltyTrail(editor)
+    >>> for penalty in (1.0, 2.0):
+    ...     editor.commit(edits.set_penalty(editor.committed, penalty), "Change penalty")
+    ...     trail.follow()
+    >>> trail.previous
+    1.0
+    >>> editor.undo()
+    >>> trail.follow()
+    >>> trail.previous
+    2.0
+    """
+
+    def __init__(self, editor: Editor) -> None:
+        self._editor = editor
+        self._present = editor.committed.warping_penalty
+        self.previous: float | None = None
+
+    def follow(self) -> None:
+        """Look at what is committed now."""
+        editor, penalty = self._editor, self._editor.committed.warping_penalty
+        if editor.undo_label is None and editor.redo_label is None:
+            # Another session: what was before it is nobody's previous penalty.
+            self.previous = None
+        elif penalty != self._present:
+            self.previous = self._present
+        self._present = penalty
+
+
+class PenaltyComparison(QObject):
+    """Shows the session at the previous penalty while B is held.
+
+    Parameters
+    ----------
+    editor
+        The truth.
+    action
+        Takes the previous penalty for good.
+    layer
+        Where it is said what is shown.
+    say
+        Shows a message in the status bar.
+    window
+        Where the key counts.
+    """
+
+    def __init__(
+        self,
+        editor: Editor,
+        action: QAction,
+        layer: MarkerLayer,
+        say: Callable[[str], None],
+        window: QWidget,
+    ) -> None:
+        super().__init__(window)
+        self._editor = editor
+        self._action = action
+        self._layer = layer
+        self._say = say
+        self._trail = PenaltyTrail(editor)
+        self._preview = PassingPreview(editor, self, Qt.Key.Key_B)
+        self._preview.ended.connect(self._on_ended)
+        self._key = QShortcut(QKeySequence(Qt.Key.Key_B), window)
+        self._key.setAutoRepeat(False)
+        self._key.activated.connect(self._on_held)
+        action.triggered.connect(self._swap)
+        editor.session_changed.connect(self._on_session)
+        self._on_session(editor.session)
+
+    def shut_down(self) -> None:
+        """Let go of the editor."""
+        self._preview.shut_down()
+        self._editor.session_changed.disconnect(self._on_session)
+
+    def _on_session(self, _session: Session) -> None:
+        self._trail.follow()
+        self._action.setEnabled(self._trail.previous is not None)
+
+    def _on_held(self) -> None:
+        previous = self._trail.previous
+        if previous is None:
+            self._say(_NONE_YET)
+        elif not self._editor.is_previewing:
+            self._preview.show(edits.set_penalty(self._editor.committed, previous))
+            length = format_length(previous, self._editor.committed.unit, 3)
+            self._layer.show_badge(f"B: previous penalty {length} (hold)")
+
+    def _on_ended(self) -> None:
+        self._layer.show_badge("")
+
+    def _swap(self) -> None:
+        if self._trail.previous is not None:
+            session = edits.set_penalty(self._editor.committed, self._trail.previous)
+            self._editor.commit(session, "Go back to previous penalty")

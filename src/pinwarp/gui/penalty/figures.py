@@ -1,0 +1,145 @@
+"""What the penalty does, in figures and in words."""
+
+from __future__ import annotations
+
+import html
+import math
+
+from qtpy.QtGui import QResizeEvent
+from qtpy.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QWidget
+
+from pinwarp.core.findings import FindingKind
+from pinwarp.core.spline import PenaltyConvention
+from pinwarp.gui.style import theme
+from pinwarp.gui.style.lengths import format_length
+from pinwarp.session.session import Session
+from pinwarp.session.warp.solver import WarpResult
+
+NO_FIGURE = "–"
+
+
+class Figure(QLabel):
+    """A number below its title."""
+
+    def __init__(self, title: str, tip: str) -> None:
+        super().__init__()
+        self._title = title
+        self.setToolTip(tip)
+        self.setMinimumWidth(self.fontMetrics().horizontalAdvance(f"{title} "))
+        self.show_text(NO_FIGURE)
+
+    def show_text(self, text: str) -> None:
+        """Show another number, formatted."""
+        self.setText(f"<small>{self._title}</small><br><b>{html.escape(text)}</b>")
+
+
+class PenaltyFigures(QWidget):
+    """The figures of the warp at the present penalty."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.flexibility = Figure("Flexibility", "Share of the non-affine freedom left")
+        self.residual = Figure("RMS residual", "How far the warped landmarks miss theirs")
+        self.left_out = Figure(
+            "Leave-one-out", "RMS distance by which each landmark is missed when it is left out"
+        )
+        self.pairs = Figure("Pairs", "Landmarks placed on both meshes that take part")
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(theme.SPACE)
+        for figure in (self.flexibility, self.residual, self.left_out, self.pairs):
+            row.addWidget(figure)
+        row.addStretch(1)
+
+    def show_result(self, result: WarpResult | None, unit: str) -> None:
+        """Show residual and pairs of a warp."""
+        rms = tidy_residual(result)
+        self.residual.show_text(NO_FIGURE if rms is None else format_length(rms, unit))
+        self.pairs.show_text(str(len(result.inputs.source) if result is not None else 0))
+
+    def show_flexibility(self, flexibility: float | None) -> None:
+        """Show the flexibility, or that there is none to speak of."""
+        self.flexibility.show_text(NO_FIGURE if flexibility is None else f"{flexibility:.0%}")
+
+    def show_left_out(self, length: float, unit: str) -> None:
+        """Show the leave-one-out error; NaN where there is none."""
+        known = math.isfinite(length)
+        self.left_out.show_text(format_length(length, unit, 3) if known else NO_FIGURE)
+
+
+class Notes(QLabel):
+    """Words as high as they need to be at the width that there is, one line at least."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setWordWrap(True)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+
+    def show_words(self, warnings: str, advice: str = "") -> None:
+        """Show warnings, and after them advice that need not alarm."""
+        words = [
+            f'<span style="color: {colour}">{html.escape(text, quote=False)}</span>'
+            for text, colour in (
+                (warnings, theme.WARNING_COLOUR),
+                (advice, theme.quiet_text_colour().name()),
+            )
+            if text
+        ]
+        self.setText("&nbsp; ".join(words))
+        self._fit_height()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Break the lines anew."""
+        super().resizeEvent(event)
+        self._fit_height()
+
+    def _fit_height(self) -> None:
+        line = self.fontMetrics().height()
+        self.setFixedHeight(max(line, self.heightForWidth(self.width()) if self.text() else 0))
+
+
+def tidy_residual(result: WarpResult | None) -> float | None:
+    """Return the RMS residual of a warp; one that is only rounding is 0."""
+    rms = result.rms_residual if result is not None else None
+    if rms is None or result is None:
+        return None
+    size = max((abs(x) for place in result.inputs.destination for x in place), default=0.0)
+    return 0.0 if rms < 1e-9 * size else rms
+
+
+def warnings_of(session: Session, result: WarpResult | None) -> str:
+    """Say what must be known about a warp before its figures are trusted.
+
+    Parameters
+    ----------
+    session
+        Whose pairs have the names.
+    result
+        The warp.
+    """
+    if result is not None and result.problem:
+        return result.problem
+    notes: list[str] = []
+    factor = result.factor if result is not None else None
+    has_modes = factor is not None and len(factor.poles) > 0
+    if result is not None and result.spline is not None:
+        names = [pair.name for pair in session.pairs]
+        notes = [
+            finding.describe(names, session.unit)
+            for finding in result.spline.findings
+            if all(row < len(names) for row in finding.rows)
+        ]
+        if not has_modes:
+            notes.append("The penalty acts from five pairs on.")
+    if session.convention is PenaltyConvention.OPYNSIM and has_modes and not notes:
+        notes.append(
+            "OPynSim's published equation has poles (the ticks): the warp overshoots before "
+            "each and flips behind it."
+        )
+    return "  ".join(notes)
+
+
+def is_nearly_planar(result: WarpResult | None) -> bool:
+    """Whether the landmarks of a warp lie nearly in a plane."""
+    findings = result.spline.findings if result is not None and result.spline is not None else ()
+    return any(finding.kind is FindingKind.NEARLY_PLANAR for finding in findings)

@@ -1,0 +1,356 @@
+"""The warping penalty: a slider from interpolation to the affine fit, its value, its effect."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from qtpy.QtCore import Qt, Signal
+from qtpy.QtGui import QAction
+from qtpy.QtWidgets import (
+    QComboBox,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QMenu,
+    QPushButton,
+    QToolButton,
+    QWidget,
+)
+
+from pinwarp.core.factor import SourceFactor
+from pinwarp.core.landmarks import Side
+from pinwarp.core.quality import PenaltyCurve
+from pinwarp.core.spline import PenaltyConvention
+from pinwarp.gui.penalty.figures import (
+    Notes,
+    PenaltyFigures,
+    is_nearly_planar,
+    tidy_residual,
+    warnings_of,
+)
+from pinwarp.gui.penalty.plot import PenaltyPlot, Plotted
+from pinwarp.gui.penalty.slider import STEPS, PenaltySlider
+from pinwarp.gui.style import theme
+from pinwarp.gui.style.lengths import format_length
+from pinwarp.session.edits import UNITS
+from pinwarp.session.judging.quality import LEAST_PAIRS, Quality, penalty_advice
+from pinwarp.session.mesh_units import unit_on
+from pinwarp.session.session import Session
+from pinwarp.session.warp.solver import WarpResult
+
+_CONVENTIONS = {
+    PenaltyConvention.REGULARISING: "Regularising",
+    PenaltyConvention.OPYNSIM: "OPynSim (published)",
+}
+_NO_CURVE = "From five pairs on, leave-one-out error and residual are drawn here."
+_OTHER_CONVENTION = "The curve and its suggestion are of the regularising convention."
+
+
+class PenaltyPanel(QWidget):
+    """Shows the session's penalty and asks for another.
+
+    Parameters
+    ----------
+    actions
+        The window's actions by key; some have a button here.
+    """
+
+    penalty_previewed = Signal(float)
+    penalty_requested = Signal(float)
+    convention_requested = Signal(object)
+    planar_requested = Signal(bool)
+    unit_requested = Signal(str)
+
+    def __init__(self, actions: Mapping[str, QAction], parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._factor: SourceFactor | None = None
+        self._result: WarpResult | None = None
+        self._quality: Quality | None = None
+        self._session = Session()
+        self._sliding = False
+
+        self.slider = PenaltySlider()
+        self.slider.setAccessibleName("Warping penalty")
+        self.slider.setMinimumWidth(160)
+        self.slider.setToolTip(
+            "How much the warp is smoothed: left meets every landmark, right is the affine fit"
+        )
+        self.plot = PenaltyPlot(self.slider, self)
+        self.value = QLineEdit()
+        self.value.setAlignment(Qt.AlignmentFlag.AlignRight)
+        self.value.setFixedWidth(self.fontMetrics().horizontalAdvance("0.00000000") + 14)
+        self.value.setToolTip("The exact penalty, a length in mesh units, or “affine”")
+        self.unit = QComboBox()
+        self.unit.setToolTip("The unit of the meshes: shown beside numbers, nothing is converted")
+        self.figures = PenaltyFigures()
+        self.convention = QComboBox()
+        for convention, text in _CONVENTIONS.items():
+            self.convention.addItem(text, convention)
+        self.convention.setToolTip(
+            "Regularising is right for every new warp; OPynSim reproduces results made elsewhere"
+        )
+        self.suggested = QPushButton()
+        self.warning = Notes()
+        self.planar = QPushButton("Treat as planar")
+        self.planar.setCheckable(True)
+        self.planar.setToolTip("Keep the warp tame across the plane that the landmarks lie in")
+        self._lay_out(actions)
+
+        self.slider.sliderPressed.connect(self._on_pressed)
+        self.slider.valueChanged.connect(self._on_slid)
+        self.slider.sliderReleased.connect(self._on_released)
+        self.plot.penalty_requested.connect(self.penalty_requested)
+        self.suggested.clicked.connect(self.take_suggested)
+        self.value.editingFinished.connect(self._on_typed)
+        self.unit.textActivated.connect(self.unit_requested)
+        self.convention.activated.connect(self._on_convention)
+        self.planar.clicked.connect(self.planar_requested)
+        self.show_session(self._session)
+        self.show_result(None)
+
+    def _lay_out(self, actions: Mapping[str, QAction]) -> None:
+        slider = QHBoxLayout()
+        slider.setSpacing(theme.SPACE)
+        # What stands at the curves' ends takes more room than the ends of the slider.
+        for text, reserved in (("Interpolates", "Interpolates"), ("Affine", "Leave-one-out")):
+            label = QLabel(text)
+            label.setEnabled(False)
+            label.setFixedWidth(self.fontMetrics().horizontalAdvance(reserved) + 4)
+            slider.addWidget(label)
+        slider.insertWidget(1, self.slider, 1)
+        exact = QHBoxLayout()
+        exact.setSpacing(4)
+        exact.addWidget(self.value)
+        exact.addWidget(self.unit)
+        exact.addSpacing(theme.SPACE)
+        exact.addWidget(self.convention, 1)
+        buttons = QHBoxLayout()
+        buttons.setSpacing(4)
+        buttons.addWidget(self.suggested, 1)
+        buttons.addWidget(_tool_button(actions["show_curve"]))
+        # Kept: Python must not let go of a menu that Qt still shows.
+        self._snapshot_menu = QMenu(self)
+        self._snapshot_menu.addActions([actions[x] for x in ("sweep", "clear_snapshots")])
+        snapshot = _tool_button(actions["snapshot"])
+        snapshot.setMenu(self._snapshot_menu)
+        snapshot.setPopupMode(QToolButton.ToolButtonPopupMode.MenuButtonPopup)
+        buttons.addWidget(snapshot)
+        below = QHBoxLayout()
+        below.addWidget(self.warning, 1)
+        below.addWidget(self.planar)
+        self._grid = grid = QGridLayout(self)
+        grid.setContentsMargins(12, 4, 12, 6)
+        grid.setHorizontalSpacing(2 * theme.SPACE)
+        grid.setVerticalSpacing(4)
+        grid.setColumnStretch(0, 1)
+        grid.addWidget(self.plot, 0, 0, 2, 1)
+        grid.addLayout(exact, 0, 1)
+        grid.addWidget(self.figures, 1, 1)
+        grid.addLayout(slider, 2, 0)
+        grid.addLayout(buttons, 2, 1)
+        grid.addLayout(below, 3, 0, 1, 2)
+
+    def show_plot(self, shown: bool) -> None:
+        """Show the curve above the slider, or make room for the bones."""
+        self.plot.setVisible(shown)
+        # Without the curve the figures take its place.
+        self._grid.addWidget(self.figures, *((1, 1) if shown else (0, 0)))
+
+    # What is shown
+
+    def show_session(self, session: Session) -> None:
+        """Show the penalty of a session."""
+        before, self._session = self._session, session
+        if session.unit != before.unit:
+            self.show_result(self._result)
+        if (session.unit, session.convention) != (before.unit, before.convention):
+            self._show_curve()
+        if not self.value.hasFocus() or not self.value.isModified():
+            penalty = session.warping_penalty
+            self.value.setText("affine" if math.isinf(penalty) else f"{penalty:.6g}")
+            self.value.setModified(False)
+        self._show_unit(session.unit)
+        self.convention.setCurrentIndex(self.convention.findData(session.convention))
+        self._place_handle()
+
+    def _show_unit(self, unit: str) -> None:
+        units = [*UNITS, *([unit] if unit not in UNITS else [])]
+        if [self.unit.itemText(i) for i in range(self.unit.count())] != units:
+            self.unit.clear()
+            self.unit.addItems(units)
+        self.unit.setCurrentText(unit)
+
+    def show_result(self, result: WarpResult | None) -> None:
+        """Show what the penalty does."""
+        self.figures.show_result(result, unit_on(self._session, Side.DESTINATION))
+        if result is not None and result.factor is not None and not result.factor.has_modes:
+            # While a source landmark moves, the penalty's scale is not known: it will be at rest.
+            return
+        self._result = result
+        self._factor = result.factor if result is not None else None
+        has_modes = self._factor is not None and len(self._factor.poles) > 0
+        self.slider.setEnabled(has_modes)
+        self.value.setEnabled(has_modes)
+        self.figures.show_flexibility(result.flexibility if result is not None else None)
+        self._show_words()
+        self.planar.setVisible(is_nearly_planar(result) or self._session.planar)
+        self.planar.setChecked(self._session.planar)
+        opynsim = self._session.convention is PenaltyConvention.OPYNSIM
+        poles = self._factor.poles.tolist() if self._factor is not None and opynsim else []
+        self.slider.set_poles(tuple(self._share_of(pole) for pole in poles))
+        if not has_modes:
+            # What is drawn was of pairs that are gone.
+            self._quality = None
+            self._show_curve()
+        self._place_handle()
+
+    def show_quality(self, quality: Quality | None) -> None:
+        """Show the curve that the pairs make, and what it suggests."""
+        self._quality = quality
+        self._show_curve()
+        self._show_words()
+        self._show_present()
+
+    @property
+    def _curve(self) -> PenaltyCurve | None:
+        return self._quality.curve if self._quality is not None else None
+
+    def _show_curve(self) -> None:
+        curve, factor, unit = self._curve, self._factor, self._session.unit
+        if curve is None or factor is None or self._quality is None:
+            count = len(self._result.inputs.source) if self._result is not None else 0
+            self.plot.show_curve(None, _NO_CURVE if count < LEAST_PAIRS else "")
+        else:
+            regular = self._session.convention is PenaltyConvention.REGULARISING
+            title = [f"RMS over {len(self._quality.inputs.source)} pairs"]
+            title += [] if regular else ["by the regularising convention"]
+            title += [] if self._quality.inputs.is_whole else ["of the whole warp"]
+            self.plot.show_curve(Plotted(curve, factor, unit, regular, ", ".join(title)))
+        self._show_suggestion()
+
+    def _show_words(self) -> None:
+        curve = self._curve
+        advice = penalty_advice(curve) if curve is not None else ""
+        if curve is not None and self._session.convention is PenaltyConvention.OPYNSIM:
+            advice = ""
+        self.warning.show_words(warnings_of(self._session, self._result), advice)
+
+    def _show_suggestion(self) -> None:
+        curve, penalty = self._curve, self.suggestion
+        there = penalty is not None and penalty == self._session.warping_penalty
+        self.suggested.setEnabled(penalty is not None and not there)
+        words, tip = "No penalty suggested", penalty_advice(curve) if curve is not None else ""
+        if penalty is not None:
+            length = format_length(penalty, self._session.unit, 3)
+            words = f"At suggested: {length}" if there else f"Use suggested: {length}"
+            tip = "The penalty with the least leave-one-out error (T)"
+        elif curve is not None and curve.suggested is not None:
+            tip = _OTHER_CONVENTION
+        self.suggested.setText(words)
+        self.suggested.setToolTip(tip)
+
+    def _show_present(self) -> None:
+        """Mark the penalty on the curve, with the figures that it has there."""
+        session = self._session
+        share = self._share_of(session.warping_penalty)
+        figures = self._figures_at(session.warping_penalty, share)
+        unit = unit_on(session, Side.DESTINATION)
+        self.figures.show_left_out(figures[0] if figures else math.nan, unit)
+        has_place = self._factor is not None and len(self._factor.poles) > 0
+        self.plot.show_present(share if has_place else None, figures)
+        self._show_suggestion()
+
+    def _figures_at(self, penalty: float, share: float) -> tuple[float, float] | None:
+        """Return leave-one-out error and residual: as solved, else as the curve has them."""
+        quality, result = self._quality, self._result
+        if quality is None or quality.curve is None or result is None:
+            return None
+        if self._session.convention is PenaltyConvention.OPYNSIM and penalty > 0:
+            return None
+        left_out, residual = quality.curve.at(1.0 - share)
+        exact = quality.inputs.penalty == penalty and not quality.curve.is_affine
+        if quality.left_out is not None and exact:
+            left_out = quality.left_out.rms
+        if result.inputs.is_whole and result.inputs.penalty == penalty:
+            residual = tidy_residual(result) or 0.0
+        return left_out, residual
+
+    # The slider's scale is flexibility: it has no unit and suits every set of landmarks
+
+    def _share_of(self, penalty: float) -> float:
+        if self._factor is None or not len(self._factor.poles):
+            return 0.0
+        return 1.0 - self._factor.flexibility(penalty)
+
+    def _place_handle(self) -> None:
+        self._show_present()
+        if self._sliding:
+            return
+        self.slider.blockSignals(True)
+        self.slider.setValue(round(self._share_of(self._session.warping_penalty) * STEPS))
+        self.slider.blockSignals(False)
+
+    def _penalty_at_handle(self) -> float:
+        if self._factor is None:
+            return self._session.warping_penalty
+        return self._factor.penalty_at(1.0 - self.slider.value() / STEPS)
+
+    # What the user does
+
+    @property
+    def suggestion(self) -> float | None:
+        """The penalty that may be taken in one go, if the pairs suggest one."""
+        if self._curve is None or self._session.convention is not PenaltyConvention.REGULARISING:
+            return None
+        return self._curve.suggested
+
+    def take_suggested(self) -> None:
+        """Ask for the suggested penalty."""
+        if self.suggestion is not None:
+            self.penalty_requested.emit(self.suggestion)
+
+    def _on_pressed(self) -> None:
+        self._sliding = True
+
+    def _on_slid(self, _value: int) -> None:
+        penalty = self._penalty_at_handle()
+        if self._sliding:
+            self.penalty_previewed.emit(penalty)
+        else:
+            self.penalty_requested.emit(penalty)
+
+    def _on_released(self) -> None:
+        self._sliding = False
+        self.penalty_requested.emit(self._penalty_at_handle())
+
+    def _on_typed(self) -> None:
+        if not self.value.isModified():
+            return
+        text = self.value.text().strip().lower().removesuffix(self._session.unit).strip()
+        try:
+            penalty = math.inf if text in ("affine", "inf", "∞") else float(text.replace(",", "."))
+            valid = penalty >= 0
+        except ValueError:
+            valid = False
+        self.value.setModified(False)
+        if not valid:
+            self.warning.show_words(
+                f"“{self.value.text()}” is not a penalty: type a number of 0 or more, or “affine”."
+            )
+            self.value.setText(f"{self._session.warping_penalty:.6g}")
+            return
+        self.penalty_requested.emit(penalty)
+
+    def _on_convention(self, index: int) -> None:
+        # Qt turns the enumeration into a plain string.
+        self.convention_requested.emit(PenaltyConvention(self.convention.itemData(index)))
+
+
+def _tool_button(action: QAction) -> QToolButton:
+    button = QToolButton()
+    button.setDefaultAction(action)
+    # The keyboard stays with the bones.
+    button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+    return button

@@ -1,0 +1,1 @@
+"""The hand: placing, moving, ghosts, the guide."""

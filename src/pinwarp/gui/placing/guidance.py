@@ -1,0 +1,170 @@
+"""Says what a click would do, asks for one landmark after the other, sets how new ones are."""
+
+from __future__ import annotations
+
+from psygnal import Signal
+from qtpy.QtWidgets import QLabel
+
+from pinwarp.core.landmarks import Side
+from pinwarp.gui.placing.guide_bar import GuideBar
+from pinwarp.gui.tasks.dialogs import Dialogs
+from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, FileTasks
+from pinwarp.gui.warp.warps import Presenter
+from pinwarp.io.template import read_template
+from pinwarp.session.editor import Editor
+from pinwarp.session.guide import next_incomplete, step_at, with_template
+
+
+class Guidance:
+    """Tells the user where things stand; ``said`` emits messages for the status bar.
+
+    Parameters
+    ----------
+    editor, presenter
+        Where the words come from.
+    tasks
+        Reads, asks and tells.
+    bar, hint
+        Where they are shown.
+    """
+
+    said = Signal(str)
+
+    def __init__(
+        self,
+        editor: Editor,
+        presenter: Presenter,
+        tasks: FileTasks[Dialogs],
+        bar: GuideBar,
+        hint: QLabel,
+    ) -> None:
+        self._editor = editor
+        self._presenter = presenter
+        self._tasks = tasks
+        self._bar = bar
+        self._hint = hint
+        bar.skip_requested.connect(lambda: self._step_guide(backwards=False))
+        bar.back_requested.connect(lambda: self._step_guide(backwards=True))
+        bar.end_requested.connect(lambda: editor.look(guided=None))
+
+    def show(self) -> None:
+        """Show what is asked for and what a click would do, as things stand."""
+        self._show_guide()
+        self._show_hint()
+
+    def _show_hint(self) -> None:
+        """Say what a click would do right now."""
+        editor, session = self._editor, self._editor.session
+        if editor.view.hovered is not None:
+            self._hint.setText(self._hover_words(editor.view.hovered))
+            return
+        missing = [side for side in Side if session.mesh(side) is None]
+        if missing:
+            self._hint.setText(
+                f"Open the {missing[0].value} mesh to begin, or drop it on its view."
+            )
+            return
+        if editor.view.locked:
+            self._hint.setText("Landmarks are locked (L unlocks): a click selects, a drag orbits.")
+            return
+        target = self._presenter.requests.target
+        targets = [f"on the {side.value} places {target(side) or 'a new one'}" for side in Side]
+        ghost = "  Space accepts the ghost." if any(self._presenter.ghosts.values()) else ""
+        self._hint.setText(f"A click {targets[0]}, {targets[1]}.{ghost}")
+
+    def _hover_words(self, name: str) -> str:
+        landmark = self._editor.session.landmark(name)
+        if landmark is None:
+            return name
+        words = [f"{name}: {landmark.state.value}"]
+        for side in Side:
+            off = self._presenter.requests.distance_off(landmark, side)
+            if off:
+                unit = self._editor.session.unit
+                words.append(f"{off:.3g} {unit} off the {side.value} surface (S snaps)")
+        if landmark.locked or self._editor.view.locked:
+            words.append("locked")
+        else:
+            words.append("click selects, drag moves it")
+        return " – ".join(words)
+
+    # The guide, and what new landmarks are like
+
+    def switch(self, on: bool) -> None:
+        """Begin to ask for landmarks, or stop."""
+        if not on:
+            self._editor.look(guided=None)
+        elif self._editor.view.guided is None:
+            name = next_incomplete(self._editor.session, None)
+            if name is None:
+                self.said.emit(
+                    "Every landmark has both sides: load a template of names to be asked for"
+                )
+            self._editor.look(guided=name)
+
+    def _step_guide(self, *, backwards: bool) -> None:
+        editor = self._editor
+        name = next_incomplete(editor.session, editor.view.guided, backwards=backwards)
+        editor.look(guided=name)
+        if name is not None:
+            editor.select(name)
+
+    def _show_guide(self) -> None:
+        editor = self._editor
+        guided = editor.view.guided
+        if guided is not None and editor.session.index_of(guided) is None:
+            # Undone or deleted: go on with another.
+            editor.look(guided=next_incomplete(editor.session, None))
+            return
+        step = step_at(editor.session, guided) if guided is not None else None
+        self._bar.show_step(editor.session, step)
+
+    def load_template(self) -> None:
+        """Ask for a list of names and begin with the first that is not placed."""
+        editor, tasks = self._editor, self._tasks
+        path = tasks.dialogs.ask_open("Load a template", LANDMARK_FILES, tasks.folder())
+        if path is None:
+            return
+
+        def arrived(names: tuple[str, ...]) -> None:
+            session = with_template(editor.committed, names)
+            editor.commit(session, f"Load template {path.name}")
+            self.said.emit(f"{len(names)} names from {path.name}")
+            editor.look(guided=next_incomplete(session, None))
+
+        tasks.run(f"Reading {path.name}", lambda _progress: read_template(path), arrived)
+
+    def ask_nudge(self) -> None:
+        """Ask how far an arrow key moves."""
+        unit, current = self._editor.session.unit, self._editor.view.nudge
+        text = self._tasks.dialogs.ask_text(
+            "Nudge step",
+            f"An arrow key moves a landmark by this many {unit} (empty: 1/500 of the bone):",
+            "" if current is None else f"{current:g}",
+        )
+        if text is None:
+            return
+        try:
+            step = float(text.replace(",", ".")) if text.strip() else None
+        except ValueError:
+            step = 0.0
+        if step is not None and not 0 < step < float("inf"):
+            self._tasks.dialogs.tell_error("Nudge step", f"“{text}” is not a length above 0.")
+            return
+        self._editor.look(nudge=step)
+
+    def ask_pattern(self) -> None:
+        """Ask what new landmarks are called."""
+        text = self._tasks.dialogs.ask_text(
+            "Name pattern",
+            "What new landmarks are called; {n} is their number:",
+            self._editor.view.name_pattern,
+        )
+        if text is None:
+            return
+        if text.count("{n}") != 1:
+            self._tasks.dialogs.tell_error(
+                "Name pattern", "The pattern must hold {n} once, for the number."
+            )
+            return
+        self._editor.look(name_pattern=text.strip())

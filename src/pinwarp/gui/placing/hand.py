@@ -1,0 +1,244 @@
+"""What the hand asks of the landmarks, turned into edits: place, move, nudge, snap, delete."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from psygnal import Signal
+
+from pinwarp.core.landmarks import Landmark, Side, as_position
+from pinwarp.gui.drawn.surface import Surface
+from pinwarp.gui.views.viewport import Viewport
+from pinwarp.session import edits
+from pinwarp.session.editor import Editor
+from pinwarp.session.guide import next_incomplete
+from pinwarp.session.naming import in_words
+from pinwarp.session.session import Session
+from pinwarp.session.warp.ghost import Ghost
+
+# An arrow key moves by this share of the bone, unless a step was set.
+NUDGE_SHARE = 1 / 500
+# Nearer to the surface than this share of the bone, a landmark counts as on it.
+ON_SURFACE = 1e-4
+ALL_LOCKED = "All landmarks are locked: L unlocks them."
+
+
+class LandmarkRequests:
+    """Turns the requests of viewports, table and menu into edits.
+
+    ``refused`` emits why something was not done, in words for the user.
+
+    Parameters
+    ----------
+    editor
+        What is edited.
+    viewports
+        Where the hand is.
+    ghost_at
+        Returns the ghost that one side shows, if any.
+    """
+
+    refused = Signal(str)
+
+    def __init__(
+        self,
+        editor: Editor,
+        viewports: dict[Side, Viewport],
+        ghost_at: Callable[[Side], Ghost | None],
+    ) -> None:
+        self._editor = editor
+        self._viewports = viewports
+        self._ghost_at = ghost_at
+        for side, viewport in viewports.items():
+            self._connect(side, viewport)
+
+    def _connect(self, side: Side, viewport: Viewport) -> None:
+        editor = self._editor
+        viewport.surface_clicked.connect(lambda position: self.place(side, position))
+        viewport.surface_ctrl_clicked.connect(lambda position: self.add_passenger(side, position))
+        viewport.background_clicked.connect(editor.select)
+        viewport.landmark_clicked.connect(lambda name: editor.select(name, side=side))
+        viewport.landmark_dragged.connect(lambda name, position: self.drag(name, side, position))
+        viewport.landmark_dropped.connect(self.drop)
+        viewport.drag_cancelled.connect(editor.cancel_preview)
+        viewport.hovered.connect(lambda name: editor.look(hovered=name))
+        viewport.nudged.connect(lambda across, upwards: self.nudge(side, across, upwards))
+
+    # Placing
+
+    def target(self, side: Side) -> str | None:
+        """Return the landmark that a click on a side fills; None for a new one."""
+        return self._editor.view.guided or edits.next_to_place(self._editor.session, side)
+
+    def place(self, side: Side, position: Iterable[float]) -> None:
+        """Place the landmark that is asked for, or a new one."""
+        editor = self._editor
+        if self._is_locked():
+            return
+        guided = editor.view.guided
+        landmark = editor.committed.landmark(guided) if guided else None
+        if landmark is not None and landmark.position(side) is not None:
+            self.refused.emit(
+                f"{guided} is placed on the {side.value} already: drag it to move it, or click on "
+                f"the {side.other.value}."
+            )
+            return
+        session, name = edits.place(
+            editor.committed,
+            side,
+            as_position(position),
+            target=guided,
+            pattern=editor.view.name_pattern,
+        )
+        self._placed(session, f"Place {name}", name, side)
+
+    def accept_ghost(self) -> None:
+        """Place the landmark that a ghost predicts, on the side that was worked on last if any."""
+        side = self._editor.selection.side
+        ghost = self._ghost_at(side.other) or self._ghost_at(side)
+        if ghost is None:
+            self.refused.emit(
+                "There is nothing to accept: from the third pair on, a landmark placed on one side "
+                "shows its ghost on the other."
+            )
+            return
+        if self._is_locked():
+            return
+        session = edits.move(self._editor.committed, ghost.name, ghost.side, ghost.position)
+        self._placed(session, f"Accept {ghost.name}", ghost.name, ghost.side)
+
+    def _placed(self, session: Session, label: str, name: str, side: Side) -> None:
+        editor = self._editor
+        editor.commit(session, label)
+        editor.select(name, side=side)
+        landmark = session.landmark(name)
+        if editor.view.guided is not None and landmark is not None and landmark.is_complete:
+            editor.look(guided=next_incomplete(session, name))
+
+    def add_passenger(self, side: Side, position: Iterable[float]) -> None:
+        """Add a passenger where the source was clicked."""
+        if self._is_locked():
+            return
+        if side is not Side.SOURCE:
+            self.refused.emit("Passengers are placed on the source: the warp carries them over.")
+            return
+        session, name = edits.add_passenger(self._editor.committed, as_position(position))
+        self._editor.commit(session, f"Add {name}")
+        self._editor.select(name, side=side)
+
+    # Moving
+
+    def drag(self, name: str, side: Side, position: Iterable[float]) -> None:
+        """Show a landmark elsewhere while it is dragged."""
+        self._editor.select(name, side=side)
+        session = edits.move(self._editor.committed, name, side, as_position(position))
+        self._editor.preview(session)
+
+    def drop(self, name: str) -> None:
+        """Leave a dragged landmark where it is."""
+        self._editor.commit(self._editor.session, f"Move {name}")
+
+    def swap_destinations(self, names: Sequence[str]) -> None:
+        """Exchange the destinations of two landmarks."""
+        editor = self._editor
+        chosen = [editor.committed.landmark(name) for name in names]
+        if any(self._is_locked(landmark) for landmark in chosen):
+            return
+        one, other = names
+        session = edits.swap_destinations(editor.committed, one, other)
+        editor.commit(session, f"Swap {one} and {other}")
+
+    def nudge(self, side: Side, across: int, upwards: int) -> None:
+        """Move the selection by steps along the screen; what is on the surface stays on it."""
+        viewport = self._viewports[side]
+        surface = viewport.surface
+        if surface is None:
+            return
+        step = self._editor.view.nudge or surface.diagonal * NUDGE_SHARE
+        right, up = viewport.view_axes()
+        shift = step * (across * right + upwards * up)
+
+        def nudged(position: NDArray) -> NDArray:
+            moved = position + shift
+            return surface.closest(moved)[0] if is_on(surface, position) else moved
+
+        self._move_selected(side, nudged, "Nudge", merge=True)
+
+    def snap(self) -> None:
+        """Put the selected landmarks onto the surface of the side they were selected on."""
+        side = self._editor.selection.side
+        surface = self._viewports[side].surface
+        if surface is None:
+            return
+        self._move_selected(side, lambda position: surface.closest(position)[0], "Snap")
+
+    def distance_off(self, landmark: Landmark, side: Side) -> float | None:
+        """Return how far off the surface a landmark is; None where it lies on it."""
+        surface, position = self._viewports[side].surface, landmark.position(side)
+        if surface is None or position is None:
+            return None
+        _, off = surface.closest(position)
+        return off if off > surface.diagonal * ON_SURFACE else None
+
+    def _move_selected(
+        self, side: Side, move: Callable[[NDArray], NDArray], verb: str, *, merge: bool = False
+    ) -> None:
+        editor = self._editor
+        session, names = editor.committed, editor.selection.names
+        if not names or self._is_locked():
+            return
+        for name in names:
+            landmark = session.landmark(name)
+            position = landmark.position(side) if landmark is not None else None
+            if landmark is None or position is None or self._is_locked(landmark):
+                continue
+            session = edits.move(session, name, side, as_position(move(np.array(position))))
+        key = f"{verb} {names} {side}" if merge else None
+        editor.commit(session, f"{verb} {in_words(names)}", key)
+
+    def _is_locked(self, landmark: Landmark | None = None) -> bool:
+        """Say whether landmarks (or one of them) are frozen, telling the user so."""
+        if self._editor.view.locked:
+            self.refused.emit(ALL_LOCKED)
+            return True
+        if landmark is not None and landmark.locked:
+            self.refused.emit(f"{landmark.name} is locked: unlock it in the table.")
+            return True
+        return False
+
+    # Deleting
+
+    def delete_side(self) -> None:
+        """Delete the selected landmarks' position on the selected side."""
+        editor, session = self._editor, self._editor.committed
+        if self._is_locked():
+            return
+        side = editor.selection.side
+        for name in editor.selection.names:
+            landmark = session.landmark(name)
+            if landmark is None or self._is_locked(landmark):
+                continue
+            # A half-placed landmark has only one position that can be meant.
+            there = landmark.position(side) is not None
+            session = edits.remove_side(session, name, side if there else side.other)
+        editor.commit(session, f"Delete position of {in_words(editor.selection.names)}")
+
+    def delete_landmarks(self) -> None:
+        """Delete the selected landmarks on both sides."""
+        editor = self._editor
+        if self._is_locked():
+            return
+        session = editor.committed
+        free = [
+            name
+            for name in editor.selection.names
+            if (landmark := session.landmark(name)) and not self._is_locked(landmark)
+        ]
+        editor.commit(edits.remove(session, free), f"Delete {in_words(free)}")
+
+
+def is_on(surface: Surface, position: NDArray) -> bool:
+    """Whether a position lies on a surface, but for rounding."""
+    return surface.closest(position)[1] <= ON_SURFACE * surface.diagonal

@@ -1,0 +1,1 @@
+"""What a viewport shows and from where, without a toolkit."""

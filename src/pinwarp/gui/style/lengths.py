@@ -1,0 +1,82 @@
+"""Lengths in words and round numbers."""
+
+from __future__ import annotations
+
+import math
+
+# From here on a number is written with a power of ten.
+_LARGEST = 1e6
+# Nobody places landmarks closer to a bone than this share of its size.
+_ON_MESH = 1e-4
+
+
+def round_length(longest: float) -> float:
+    """Return the largest of 1, 2, 5, 10, ... that is no longer than this.
+
+    Examples
+    --------
+    >>> round_length(73.2), round_length(0.0199)
+    (50.0, 0.01)
+    """
+    if not (math.isfinite(longest) and longest > 0):
+        return 0.0
+    exponent = math.floor(math.log10(longest))
+    # The power of ten is divided where it is negative: 5 / 100 is 0.05, 5 * 0.01 may not be.
+    lengths = [
+        digit * 10.0**power if power >= 0 else digit / 10.0**-power
+        for power in (exponent - 1, exponent, exponent + 1)
+        for digit in (1, 2, 5)
+    ]
+    return max(length for length in lengths if length <= longest)
+
+
+def format_number(value: float, digits: int = 3) -> str:
+    """Return a number with some significant digits, and never less than its whole part.
+
+    Examples
+    --------
+    >>> format_number(2.40047), format_number(1473.2), format_number(0.0)
+    ('2.4', '1473', '0')
+    """
+    if 10**digits <= abs(value) < _LARGEST:
+        return f"{value:.0f}"
+    return f"{value:.{digits}g}"
+
+
+def format_length(value: float, unit: str, digits: int = 4) -> str:
+    """Return a length with a sensible number of digits and its unit.
+
+    Examples
+    --------
+    >>> format_length(2.40047, "mm"), format_length(float("inf"), "mm")
+    ('2.4 mm', 'affine')
+    """
+    if math.isinf(value):
+        return "affine"
+    return f"{format_number(value, digits)} {unit}".rstrip()
+
+
+def distance_from_mesh(distance: float, size: float, unit: str) -> str:
+    """Return how far something lies from a mesh of some size, in words.
+
+    Examples
+    --------
+    >>> distance_from_mesh(312.4, 480.0, "mm"), distance_from_mesh(2.5e-7, 480.0, "mm")
+    ('312 mm from the mesh', 'on the mesh')
+    """
+    if distance <= _ON_MESH * size:
+        return "on the mesh"
+    return f"{format_length(distance, unit, 3)} from the mesh"
+
+
+def ticks(largest: float) -> tuple[float, ...]:
+    """Return 0 and one to three round lengths up to the largest, evenly apart.
+
+    Examples
+    --------
+    >>> ticks(11.6), ticks(0.0)
+    ((0.0, 5.0, 10.0), (0.0,))
+    """
+    # 1.5 to 3.75 steps: neither a lonely label nor a ladder.
+    step = round_length(largest / 1.5)
+    return tuple(step * i for i in range(int(largest / step) + 1)) if step else (0.0,)

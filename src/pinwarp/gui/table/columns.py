@@ -1,0 +1,375 @@
+"""The columns of the landmark table: what each is called, shows, sorts by and lets one type.
+
+A new column, such as one of a quality, is one entry in :data:`COLUMNS` and a call of
+``LandmarkModel.show_values`` with its numbers.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from qtpy.QtGui import QIcon
+
+from pinwarp.core.errors import LandmarkError
+from pinwarp.core.findings import Finding, FindingKind
+from pinwarp.core.landmarks import Landmark, LandmarkState, Position, Side, as_position
+from pinwarp.gui.painted.markers import state_icon
+from pinwarp.gui.style import theme
+from pinwarp.gui.style.icons import kept_icon
+from pinwarp.io.csv_cells import as_sentence, number_of
+from pinwarp.session import edits
+from pinwarp.session.judging.quality import NamedFinding
+from pinwarp.session.session import Session
+from pinwarp.session.warp.solver import is_rounding
+
+
+@dataclass(frozen=True)
+class Row:
+    """A landmark, the numbers found for it by the key of their column, and what was noticed.
+
+    ``unit`` is the session's, ``units`` what is right for coordinates on either side.
+    """
+
+    landmark: Landmark
+    values: Mapping[str, float]
+    findings: Sequence[NamedFinding] = ()
+    unit: str = ""
+    units: Mapping[Side, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column.
+
+    Parameters
+    ----------
+    key
+        Its name in the program.
+    title, tip
+        What its header says, and in full.
+    text
+        What a cell says.
+    sort_key
+        What it sorts by; None always comes last.
+    cell_tip
+        What a cell says in full; the column's own tip where there is none.
+    icon, checked
+        A picture, and a tick, in front of the text.
+    edit
+        Session, name and typed text to a session; raises a LandmarkError with the reason.
+    edit_text, can_edit, label
+        What editing begins with, whether it may, and what Undo calls it.
+    side
+        Which side of the landmark a click on a cell means.
+    header_icon
+        The name of an icon that says the title in less room.
+    short_title
+        Letters that do so.
+    is_length
+        Whether its numbers are lengths: the header then says their unit.
+    has_bar
+        Whether a bar behind the number shows how large it is beside the others.
+    is_numeric
+        Whether it is written flush right.
+    widest
+        A text as wide as they come.
+    on_demand
+        Whether it is hidden at first.
+    """
+
+    key: str
+    title: str
+    tip: str
+    text: Callable[[Row], str]
+    sort_key: Callable[[Row], Any]
+    cell_tip: Callable[[Row], str] | None = None
+    icon: Callable[[Row], QIcon | None] | None = None
+    checked: Callable[[Row], bool | None] | None = None
+    edit: Callable[[Session, str, str], Session] | None = None
+    edit_text: Callable[[Row], str] | None = None
+    can_edit: Callable[[Row], bool] = lambda _row: True
+    label: str = "Edit {}"
+    side: Side | None = None
+    header_icon: str = ""
+    short_title: str = ""
+    is_length: bool = False
+    has_bar: bool = False
+    is_numeric: bool = False
+    widest: str = ""
+    on_demand: bool = False
+
+
+def number_column(
+    key: str,
+    title: str,
+    tip: str,
+    text: Callable[[float, Landmark], str] | None = None,
+    **more: Any,
+) -> Column:
+    """Return a column of numbers that the model was shown under its key.
+
+    Parameters
+    ----------
+    key, title, tip
+        As of a :class:`Column`.
+    text
+        What is shown of a number.
+    more
+        Further parameters of the column.
+
+    Examples
+    --------
+    >>> column = number_column("spread", "Spread", "How far apart")
+    >>> column.text(Row(Landmark("fovea"), {"spread": 0.12345})), column.title
+    ('0.123', 'Spread')
+    """
+
+    def shown(row: Row) -> str:
+        value = row.values.get(key)
+        if value is None or not math.isfinite(value):
+            return ""
+        return f"{value:.3g}" if text is None else text(value, row.landmark)
+
+    return Column(
+        key=key,
+        title=title,
+        tip=tip,
+        text=shown,
+        # What is shown as 0 is 0: the noise below sorts nothing.
+        sort_key=lambda row: 0.0 if shown(row) == "0" else row.values.get(key),
+        is_numeric=True,
+        widest="0.00123",
+        **more,
+    )
+
+
+@functools.lru_cache(maxsize=4096)
+def natural(text: str) -> tuple[tuple[int, int, str], ...]:
+    """Return a key that sorts numbers in names as numbers.
+
+    Examples
+    --------
+    >>> sorted(["p10", "p9", "P1"], key=natural)
+    ['P1', 'p9', 'p10']
+    """
+    parts = re.findall(r"[0-9]+|[^0-9]+", text.casefold())
+    return tuple((0, int(p), "") if p.isascii() and p.isdigit() else (1, 0, p) for p in parts)
+
+
+def position_text(position: Position | None, unit: str) -> str:
+    """Return a position for people."""
+    if position is None:
+        return "not placed"
+    return "({:.5g}, {:.5g}, {:.5g})".format(*position) + f" {unit}".rstrip()
+
+
+def _name_tip(row: Row) -> str:
+    landmark = row.landmark
+    lock = ", locked" if landmark.locked else ""
+    note = f"\n{landmark.note}" if landmark.note else ""
+    return f"{landmark.name}: {landmark.state.value}{lock}{note}"
+
+
+def _tick(row: Row) -> bool | None:
+    is_passenger = row.landmark.state is LandmarkState.PASSENGER
+    return None if is_passenger else row.landmark.enabled
+
+
+def _lock_icon(row: Row) -> QIcon:
+    return kept_icon("locked" if row.landmark.locked else "unlock")
+
+
+def _lock_tip(row: Row) -> str:
+    if row.landmark.locked:
+        return "Locked: it cannot be moved by accident. A click unlocks it."
+    return "A click locks it where it is."
+
+
+def _placed(side: Side) -> Callable[[Row], str]:
+    def text(row: Row) -> str:
+        passenger = row.landmark.state is LandmarkState.PASSENGER
+        if passenger and side is Side.DESTINATION and row.landmark.source is not None:
+            return "→"
+        return "–" if row.landmark.position(side) is None else "✓"
+
+    return text
+
+
+def _placed_tip(side: Side) -> Callable[[Row], str]:
+    def tip(row: Row) -> str:
+        if _placed(side)(row) == "→":
+            return "A passenger: the warp carries it over."
+        return position_text(row.landmark.position(side), row.units.get(side, ""))
+
+    return tip
+
+
+def _length_text(length: float, landmark: Landmark) -> str:
+    place = landmark.destination
+    return "0" if place is not None and is_rounding(length, place) else f"{length:.3g}"
+
+
+def _left_out_tip(row: Row) -> str:
+    if row.findings:
+        return "\n".join(found.sentence for found in row.findings)
+    missed, times = row.values.get("left_out"), row.values.get("standardised")
+    if missed is None or times is None or not math.isfinite(missed):
+        return ""
+    # The same words for those that are not suspicious.
+    ordinary = Finding(FindingKind.SUSPECT, (0,), times, (missed,))
+    return ordinary.describe([row.landmark.name], row.unit)
+
+
+def _sign(row: Row) -> QIcon | None:
+    if not row.findings:
+        return None
+    if any(found.finding.is_grave for found in row.findings):
+        return kept_icon("warning", theme.WARNING_COLOUR)
+    return kept_icon("isolated", theme.QUIET_INK)
+
+
+def _side_column(side: Side) -> Column:
+    return Column(
+        key=side.value,
+        title=side.value.capitalize(),
+        tip=f"Whether it is placed on the {side.value} mesh; the tip shows where",
+        text=_placed(side),
+        sort_key=lambda row: row.landmark.position(side) is None,
+        cell_tip=_placed_tip(side),
+        side=side,
+        short_title=side.value[0].upper(),
+        widest="→",
+    )
+
+
+def typed_position(landmark: Landmark, side: Side, axis: int, text: str) -> Position:
+    """Return where a landmark is after a number was typed for one axis, or three for all.
+
+    Raises
+    ------
+    LandmarkError
+        With the reason why this is no position.
+
+    Examples
+    --------
+    >>> typed_position(Landmark("fovea", (1, 2, 3)), Side.SOURCE, 2, "4,5")
+    (1.0, 2.0, 4.5)
+    >>> typed_position(Landmark("fovea"), Side.SOURCE, 0, "1 2 3")
+    (1.0, 2.0, 3.0)
+    """
+    cells = re.split(r"[;\s]+", text.strip(" \t;()[]"))
+    before = landmark.position(side)
+    try:
+        numbers = [number_of(cell, ";") for cell in cells]
+    except ValueError as error:
+        raise LandmarkError(f"{as_sentence(str(error))} Type one such as 12.5.") from None
+    if len(numbers) == 3:
+        return as_position(numbers)
+    if len(numbers) != 1:
+        raise LandmarkError("Type one number, or three for x, y and z.")
+    if before is None:
+        raise LandmarkError(
+            f"{landmark.name} is not placed on the {side.value} yet: type all three, as in 1 2 3."
+        )
+    return as_position([numbers[0] if i == axis else before[i] for i in range(3)])
+
+
+def _coordinate_column(side: Side, short: str, axis: int) -> Column:
+    letter = "xyz"[axis]
+
+    def value(row: Row) -> float | None:
+        position = row.landmark.position(side)
+        return None if position is None else position[axis]
+
+    def edit(session: Session, name: str, text: str) -> Session:
+        landmark = session.landmark(name)
+        if landmark is None:
+            raise LandmarkError(f"There is no landmark called {name}.")
+        return edits.move(session, name, side, typed_position(landmark, side, axis, text))
+
+    return Column(
+        key=f"{side.value}_{letter}",
+        title=f"{short} {letter}",
+        tip=f"{letter} on the {side.value} mesh: double-click to type it, or all three (1 2 3)",
+        text=lambda row: "" if (number := value(row)) is None else f"{number:.6g}",
+        sort_key=value,
+        edit=edit,
+        edit_text=lambda row: "" if (number := value(row)) is None else repr(number),
+        can_edit=lambda row: not row.landmark.locked,
+        label="Move {}",
+        side=side,
+        is_length=True,
+        is_numeric=True,
+        widest="-1234.56",
+        on_demand=True,
+    )
+
+
+NAME, LOCKED = "name", "locked"
+
+COLUMNS: tuple[Column, ...] = (
+    Column(
+        key=NAME,
+        title="Landmark",
+        tip="Double-click or F2 renames; the tick lets the pair take part",
+        text=lambda row: row.landmark.name,
+        sort_key=lambda row: natural(row.landmark.name),
+        cell_tip=_name_tip,
+        icon=lambda row: state_icon(row.landmark.state),
+        checked=_tick,
+        edit=edits.rename,
+        edit_text=lambda row: row.landmark.name,
+        label="Rename {}",
+    ),
+    _side_column(Side.SOURCE),
+    *(_coordinate_column(Side.SOURCE, "Source", axis) for axis in range(3)),
+    _side_column(Side.DESTINATION),
+    *(_coordinate_column(Side.DESTINATION, "Dest.", axis) for axis in range(3)),
+    number_column(
+        "residual",
+        "Residual",
+        "Distance from the warped source landmark to its destination",
+        _length_text,
+        is_length=True,
+        has_bar=True,
+    ),
+    number_column(
+        "left_out",
+        "Left out",
+        "How far the destination lies from where the other pairs alone would put the landmark",
+        _length_text,
+        cell_tip=_left_out_tip,
+        icon=_sign,
+        is_length=True,
+        has_bar=True,
+    ),
+    Column(
+        key=LOCKED,
+        title="Lock",
+        tip="A locked landmark cannot be moved by accident; a click locks and unlocks",
+        text=lambda _row: "",
+        sort_key=lambda row: not row.landmark.locked,
+        cell_tip=_lock_tip,
+        icon=_lock_icon,
+        header_icon="locked",
+    ),
+)
+
+
+_NUMBERS = {column.key: number for number, column in enumerate(COLUMNS)}
+
+
+def column_number(key: str) -> int:
+    """Return where a column stands.
+
+    Raises
+    ------
+    KeyError
+        When there is no such column.
+    """
+    return _NUMBERS[key]

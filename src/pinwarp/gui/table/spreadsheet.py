@@ -1,0 +1,91 @@
+"""Rows to and from a spreadsheet by way of the clipboard."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+from qtpy.QtGui import QGuiApplication
+
+from pinwarp.core.errors import PinwarpError
+from pinwarp.core.landmarks import Landmark
+from pinwarp.gui.tasks.dialogs import Dialogs
+from pinwarp.io.clipboard_table import (
+    ClipboardTable,
+    PastedLandmark,
+    SkippedLine,
+    clipboard_text,
+    read_clipboard,
+)
+from pinwarp.session import edits
+from pinwarp.session.editor import Editor
+from pinwarp.session.naming import in_words
+
+
+class Spreadsheet:
+    """What is beyond the clipboard.
+
+    Parameters
+    ----------
+    editor
+        The truth.
+    dialogs
+        Tells which rows could not be used.
+    say
+        Says a sentence in passing.
+    """
+
+    def __init__(self, editor: Editor, dialogs: Dialogs, say: Callable[[str], None]) -> None:
+        self._editor = editor
+        self._dialogs = dialogs
+        self._say = say
+
+    def copy(self, landmarks: Sequence[Landmark]) -> None:
+        """Put landmarks on the clipboard."""
+        QGuiApplication.clipboard().setText(clipboard_text(landmarks))
+        self._say(f"Copied {in_words([mark.name for mark in landmarks])} for a spreadsheet.")
+
+    def paste(self) -> list[str]:
+        """Bring in rows as one step, tell which could not be used, and return what came."""
+        session, frozen = self._editor.committed, self._editor.view.locked
+        locked = {mark.name: mark for mark in session.landmarks if mark.locked or frozen}
+        try:
+            table = _without_moves(locked, read_clipboard(QGuiApplication.clipboard().text()))
+            pasted = edits.paste(session, table.rows)
+        except PinwarpError as error:
+            self._say(str(error))
+            return []
+        names = [row.name for row in table.rows]
+        if names:
+            self._editor.commit(pasted, f"Paste {in_words(names)}")
+        if table.skipped:
+            self._tell(names, table.skipped)
+        else:
+            self._say(f"Pasted {in_words(names)}.")
+        return names
+
+    def _tell(self, names: Sequence[str], skipped: Sequence[SkippedLine]) -> None:
+        count, first = len(skipped), skipped[0]
+        rows = "row was" if count == 1 else "rows were"
+        self._dialogs.tell(
+            "Paste landmarks",
+            f"Pasted {in_words(names)}. {count} {rows} not used in full, the first in line "
+            f"{first.line}: {first.reason}.",
+            "\n".join(f"line {x.line}: {x.reason}   ({x.text})" for x in skipped),
+        )
+
+
+def _without_moves(locked: Mapping[str, Landmark], table: ClipboardTable) -> ClipboardTable:
+    """Leave out what would move locked landmarks, and say so."""
+    rows: list[PastedLandmark] = []
+    skipped = list(table.skipped)
+    for row in table.rows:
+        mark = locked.get(row.name)
+        places = {"source", "destination"} & set(row.values)
+        if mark is not None and any(row.values[side] != getattr(mark, side) for side in places):
+            skipped.append(SkippedLine(row.line, row.name, "it is locked, so that it stays there"))
+            kept = {key: value for key, value in row.values.items() if key not in places}
+            rows.append(replace(row, values=kept))
+        else:
+            rows.append(row)
+    return ClipboardTable(tuple(rows), tuple(sorted(skipped, key=lambda line: line.line)))

@@ -1,0 +1,61 @@
+"""What slow jobs look like: a bar in the status bar, and a button that cancels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from qtpy.QtCore import QObject
+from qtpy.QtWidgets import QProgressBar, QPushButton, QStatusBar
+
+from pinwarp.gui.tasks.jobs import SlowJob
+from pinwarp.gui.tasks.stepped_job import SteppedJob
+
+
+class JobProgress(QObject):
+    """Shows the bar and the button while any job runs.
+
+    Parameters
+    ----------
+    place
+        Where they stand.
+    jobs
+        What is watched.
+    """
+
+    def __init__(self, place: QStatusBar, jobs: Sequence[SlowJob | SteppedJob]) -> None:
+        super().__init__(place)
+        self._jobs = jobs
+        self.bar = QProgressBar()
+        self.bar.setRange(0, 100)
+        self.bar.setFixedWidth(220)
+        self.bar.hide()
+        self.cancel = QPushButton("Cancel")
+        self.cancel.setFlat(True)
+        self.cancel.hide()
+        place.addPermanentWidget(self.bar)
+        place.addPermanentWidget(self.cancel)
+        for job in jobs:
+            job.started.connect(self._on_started)
+            job.progressed.connect(self._on_progressed)
+            job.ended.connect(self._on_ended)
+            self.cancel.clicked.connect(job.cancel)
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether no job runs."""
+        return all(job.is_idle for job in self._jobs)
+
+    def _on_started(self, title: str) -> None:
+        self.bar.setFormat(title)
+        self.bar.setValue(0)
+        self.bar.show()
+        self.cancel.show()
+
+    def _on_progressed(self, share: float, stage: str) -> None:
+        self.bar.setValue(round(100 * share))
+        self.bar.setFormat(f"{stage} – %p%")
+
+    def _on_ended(self) -> None:
+        if self.is_idle:
+            self.bar.hide()
+            self.cancel.hide()

@@ -1,0 +1,1 @@
+"""The two viewports, their cameras and their controls."""

@@ -1,0 +1,258 @@
+"""What the View menu does: cameras and looks. Nothing here changes the session."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from qtpy.QtCore import QObject, Qt
+from qtpy.QtGui import QAction, QActionGroup
+from qtpy.QtWidgets import QHBoxLayout, QSizePolicy, QSlider, QToolBar, QWidget
+
+from pinwarp.core.alignment import Similarity
+from pinwarp.core.landmarks import Landmark, Side
+from pinwarp.gui.scene.camera_pose import (
+    Matrix,
+    Pose,
+    StandardView,
+    best_frame,
+    inverse,
+    pairing_fit,
+    standard_frame,
+)
+from pinwarp.gui.style.icons import icon
+from pinwarp.gui.views.camera_link import CameraLink
+from pinwarp.gui.views.canvas import Canvas
+from pinwarp.session.editor import Editor, LinkMode
+from pinwarp.session.session import Session
+
+LINK_ACTIONS = {
+    LinkMode.LINKED: "link_linked",
+    LinkMode.ROTATION: "link_rotation",
+    LinkMode.FREE: "link_free",
+}
+# Smallest and largest landmark, in logical pixels.
+MARKER_RADII = (4.0, 12.0)
+# Share of the bone's diagonal that the height of a view shows after a focus.
+CLOSE_UP = 0.4
+
+
+class ViewControls(QObject):
+    """Wires the View menu's actions to the views.
+
+    Parameters
+    ----------
+    editor
+        Its view state is what the actions change.
+    views
+        One per side.
+    actions
+        By their keys.
+    parent
+        The window.
+    """
+
+    def __init__(
+        self,
+        editor: Editor,
+        views: Mapping[Side, Canvas],
+        actions: Mapping[str, QAction],
+        parent: QObject,
+    ) -> None:
+        super().__init__(parent)
+        self._editor = editor
+        self._views = views
+        self._actions = actions
+        self._fitted_for: tuple[Landmark, ...] | None = None
+        self._fit: Similarity | None = None
+        self.section_slider = _section_slider()
+        self._surfaces = self._surfaces_now()
+        self._pairs = 0
+        self.link = CameraLink(views, self.pairing_fit)
+        self._connect()
+        self._on_view()
+
+    def _connect(self) -> None:
+        actions, editor = self._actions, self._editor
+        links = QActionGroup(self)
+        for mode, key in LINK_ACTIONS.items():
+            links.addAction(actions[key])
+            self._on_trigger(key, lambda mode=mode: editor.look(link=mode))
+        self._on_trigger("link_next", self._next_link)
+        self._on_trigger("fit", self.fit_all)
+        self._on_trigger("focus", self.focus)
+        for view in StandardView:
+            self._on_trigger(f"view_{view.value}", lambda view=view: self.look_from(view))
+        actions["arrows"].toggled.connect(lambda on: editor.look(arrows=on))
+        actions["wireframe"].toggled.connect(lambda on: editor.look(wireframe=on))
+        actions["section"].toggled.connect(self._on_section)
+        self._on_trigger("markers_larger", lambda: self._resize_markers(1))
+        self._on_trigger("markers_smaller", lambda: self._resize_markers(-1))
+        self.section_slider.valueChanged.connect(self._on_section_moved)
+        editor.view_changed.connect(self._on_view)
+        editor.session_changed.connect(self._on_session)
+
+    def _on_trigger(self, key: str, call: Callable[..., object]) -> None:
+        # Qt's "checked" argument is of no use to any of them.
+        self._actions[key].triggered.connect(lambda _checked=False: call())
+
+    def add_to(self, bar: QToolBar) -> None:
+        """Put the cross-section and its depth into a toolbar."""
+        bar.addAction(self._actions["section"])
+        holder = QWidget()
+        row = QHBoxLayout(holder)
+        row.setContentsMargins(4, 0, 8, 0)
+        row.addWidget(self.section_slider)
+        holder.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Preferred)
+        bar.addWidget(holder)
+
+    def shut_down(self) -> None:
+        """Let go of the cameras and the editor."""
+        self.link.unlink()
+        self._editor.view_changed.disconnect(self._on_view)
+        self._editor.session_changed.disconnect(self._on_session)
+
+    # What changed
+
+    def _on_view(self, _changed: object = None) -> None:
+        view, actions = self._editor.view, self._actions
+        self.link.set_mode(view.link)
+        actions[LINK_ACTIONS[view.link]].setChecked(True)
+        actions["link_next"].setIcon(icon(LINK_ACTIONS[view.link]))
+        actions["markers_larger"].setEnabled(view.marker_radius < MARKER_RADII[1])
+        actions["markers_smaller"].setEnabled(view.marker_radius > MARKER_RADII[0])
+        actions["arrows"].setChecked(view.arrows)
+        actions["wireframe"].setChecked(view.wireframe)
+        actions["section"].setChecked(view.section is not None)
+        self.section_slider.setEnabled(view.section is not None)
+        if view.section is not None:
+            self.section_slider.setValue(round(view.section * self.section_slider.maximum()))
+        actions["link_next"].setToolTip(f"Cameras are {view.link.value} (K changes it)")
+
+    def _on_session(self, session: Session) -> None:
+        surfaces, pairs = self._surfaces_now(), len(session.pairs)
+        # Each view has just fitted its new bone by itself, from a side of its own choice. Pairs
+        # that come many at once are from a file: nobody is aiming at a place on the bone.
+        unaligned = surfaces != self._surfaces or (self._pairs < 3 and pairs > self._pairs + 1)
+        self._surfaces, self._pairs = surfaces, pairs
+        if unaligned and self.pairing_fit() is not None:
+            self.fit_all()
+
+    def _surfaces_now(self) -> list[object]:
+        return [view.surface for view in self._views.values()]
+
+    def pairing_fit(self) -> Similarity | None:
+        """Return how the pairs map source to destination; the same object for the same pairs."""
+        landmarks = self._editor.session.landmarks
+        if landmarks is not self._fitted_for:
+            pairs = self._editor.session.pairs
+            fit = pairing_fit(
+                [pair.source for pair in pairs if pair.source is not None],
+                [pair.destination for pair in pairs if pair.destination is not None],
+            )
+            self._fitted_for = landmarks
+            if not _same(fit, self._fit):
+                self._fit = fit
+        return self._fit
+
+    # Looks
+
+    def _resize_markers(self, by: float) -> None:
+        radius = self._editor.view.marker_radius + by
+        self._editor.look(marker_radius=float(np.clip(radius, *MARKER_RADII)))
+
+    def _on_section(self, on: bool) -> None:
+        slider = self.section_slider
+        self._editor.look(section=slider.value() / slider.maximum() if on else None)
+
+    def _on_section_moved(self, value: int) -> None:
+        if self._editor.view.section is not None:
+            self._editor.look(section=value / self.section_slider.maximum())
+
+    # Cameras
+
+    def _next_link(self) -> None:
+        modes = list(LinkMode)
+        following = modes[(modes.index(self._editor.view.link) + 1) % len(modes)]
+        self._editor.look(link=following)
+
+    def fit_all(self) -> None:
+        """Show both bones as a whole; once the pairs tell how, from the same anatomical side."""
+        fit = self.pairing_fit() if self.link.mode is not LinkMode.FREE else None
+        self._show_from(StandardView.FRONT, fit.rotation if fit is not None else None)
+
+    def look_from(self, view: StandardView) -> None:
+        """Show both bones from one of the source's six sides."""
+        self._show_from(view, self.link.source_to_destination())
+
+    def _show_from(self, view: StandardView, rotation: Matrix | None) -> None:
+        frames = {}
+        for side, canvas in self._views.items():
+            if canvas.bone is not None:
+                frames[side] = standard_frame(best_frame(canvas.bone.bounds_size), view)
+        if rotation is not None and len(frames) == 2:
+            frames[Side.DESTINATION] = rotation @ frames[Side.SOURCE]
+        with self.link.on_their_own():
+            for side, frame in frames.items():
+                self._views[side].look_at_all(frame)
+
+    def focus(self) -> None:
+        """Look at the selected landmarks from nearby, in both views; at everything without any."""
+        targets = self._targets()
+        if not targets:
+            self.fit_all()
+            return
+        rotation = self.link.source_to_destination()
+        poses = {side: Pose.of(view.camera) for side, view in self._views.items()}
+        if rotation is not None:
+            turned = rotation @ poses[Side.SOURCE].frame
+            poses[Side.DESTINATION] = poses[Side.DESTINATION].turned(turned)
+        with self.link.on_their_own():
+            for side, positions in targets.items():
+                view, pose = self._views[side], poses[side]
+                if view.bone is None:
+                    continue
+                centre = positions.mean(axis=0)
+                reach = 1.3 * float(np.linalg.norm(positions - centre, axis=1).max())
+                half_height = max(
+                    reach, CLOSE_UP / 2 * float(np.linalg.norm(view.bone.bounds_size))
+                )
+                near = half_height / np.tan(np.radians(view.camera.GetViewAngle()) / 2)
+                # Whoever has zoomed in further stays there.
+                view.set_pose(pose.focused(centre, min(pose.distance, float(near))))
+
+    def _targets(self) -> dict[Side, Matrix]:
+        """Return where the selected landmarks are; the pairs guess the side that is missing."""
+        editor, targets = self._editor, {}
+        selected = [editor.session.landmark(name) for name in editor.selection.names]
+        for side in Side:
+            placed = [x.position(side) for x in selected if x is not None]
+            positions = [position for position in placed if position is not None]
+            if positions:
+                targets[side] = np.array(positions)
+        fit = self.pairing_fit()
+        if len(targets) == 1 and fit is not None and self.link.mode is LinkMode.LINKED:
+            ((side, known),) = targets.items()
+            there = fit if side is Side.SOURCE else inverse(fit)
+            targets[side.other] = there.apply(known)
+        return targets
+
+
+def _section_slider() -> QSlider:
+    slider = QSlider(Qt.Orientation.Horizontal)
+    slider.setRange(0, 200)
+    slider.setValue(100)
+    slider.setFixedWidth(110)
+    slider.setAccessibleName("Depth of the cross-section")
+    slider.setToolTip("Depth of the cross-section")
+    return slider
+
+
+def _same(a: Similarity | None, b: Similarity | None) -> bool:
+    if a is None or b is None:
+        return a is b
+    return (
+        a.scale == b.scale
+        and np.array_equal(a.rotation, b.rotation)
+        and np.array_equal(a.translation, b.translation)
+    )

@@ -1,0 +1,222 @@
+"""One viewport: a picture that says what was clicked, dragged, hovered or dropped on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from qtpy.QtCore import QEvent, QPointF, Qt, QTimer, Signal
+from qtpy.QtGui import QDragEnterEvent, QDropEvent, QKeyEvent, QMouseEvent, QWheelEvent
+from qtpy.QtWidgets import QWidget
+
+from pinwarp.core.landmarks import Side
+from pinwarp.gui.scene.scene import Marker
+from pinwarp.gui.views.canvas import Canvas
+
+# A press released within SLOP pixels is a click; one begun within REACH of a landmark grabs it.
+SLOP = 4
+REACH = 10
+# The wheel has come to rest when no notch came for this long.
+ZOOM_REST_MS = 250
+_ARROWS = {
+    Qt.Key.Key_Left: (-1, 0),
+    Qt.Key.Key_Right: (1, 0),
+    Qt.Key.Key_Up: (0, 1),
+    Qt.Key.Key_Down: (0, -1),
+}
+
+
+@dataclass
+class _Press:
+    """A left press that is not yet known to be a click, a drag of a landmark, or an orbit."""
+
+    at: QPointF
+    event: QMouseEvent
+    marker: Marker | None
+    offset: QPointF
+    dragging: bool = False
+
+
+class Viewport(Canvas):
+    """The picture of one side.
+
+    Positions in signals are (3,) arrays in the mesh's frame and unit.
+    """
+
+    surface_clicked = Signal(object)
+    surface_ctrl_clicked = Signal(object)
+    nudged = Signal(int, int)
+    background_clicked = Signal()
+    landmark_clicked = Signal(str)
+    landmark_dragged = Signal(str, object)
+    landmark_dropped = Signal(str)
+    drag_cancelled = Signal()
+    hovered = Signal(object)
+    files_dropped = Signal(list)
+
+    def __init__(self, side: Side, parent: QWidget | None = None) -> None:
+        self._press: _Press | None = None
+        super().__init__(side, parent)
+        self._passing: Qt.MouseButton | None = None
+        self._hovered: str | None = None
+        self._zoom_rest = QTimer(self)
+        self._zoom_rest.setSingleShot(True)
+        self._zoom_rest.setInterval(ZOOM_REST_MS)
+        self._zoom_rest.timeout.connect(lambda: self.set_orbiting(False))
+        self.iren.clear_key_event_callbacks()
+        self.setAcceptDrops(True)
+
+    # The mouse and the keyboard
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Hold a left press back until it is known what it becomes; right and middle pan."""
+        self.setFocus(Qt.FocusReason.MouseFocusReason)
+        if self._passing is not None or self._press is not None:
+            return
+        if event.button() == Qt.MouseButton.LeftButton:
+            at = event.position()
+            marker = self.layer.nearest(at, REACH)
+            offset = QPointF(0, 0)
+            if marker is not None:
+                ((x, y),) = self.project(np.array([marker.position]))
+                offset = QPointF(x, y) - at
+            self._press = _Press(at, QMouseEvent(event), marker, offset)
+            return
+        self._pass_on(event, QEvent.Type.MouseButtonPress, Qt.MouseButton.MiddleButton)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        """Orbit, drag a landmark, or hover."""
+        press = self._press
+        if press is None:
+            if not event.buttons():
+                self._hover(event.position())
+            super().mouseMoveEvent(event)
+            return
+        moved = event.position() - press.at
+        if not press.dragging and max(abs(moved.x()), abs(moved.y())) <= SLOP:
+            return
+        if press.marker is None or not press.marker.movable:
+            self._press = None
+            self._pass_on(press.event, QEvent.Type.MouseButtonPress, Qt.MouseButton.LeftButton)
+            super().mouseMoveEvent(event)
+            return
+        press.dragging = True
+        at = event.position() + press.offset
+        if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
+            # Off the surface: a femoral head's centre lies inside the bone.
+            position: NDArray | None = self.in_view_plane(at, np.array(press.marker.position))
+        else:
+            position = self.pick(at)
+        if position is not None:
+            self.landmark_dragged.emit(press.marker.name, position)
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        """Tell a click from the end of a drag."""
+        press = self._press
+        if press is None:
+            if self._passing is not None:
+                self._pass_on(event, QEvent.Type.MouseButtonRelease, self._passing)
+            return
+        if event.button() != Qt.MouseButton.LeftButton:
+            return
+        self._press = None
+        if press.dragging and press.marker is not None:
+            self.landmark_dropped.emit(press.marker.name)
+        elif press.marker is not None:
+            self.landmark_clicked.emit(press.marker.name)
+        elif (position := self.pick(press.at)) is not None:
+            with_ctrl = bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
+            (self.surface_ctrl_clicked if with_ctrl else self.surface_clicked).emit(position)
+        else:
+            self.background_clicked.emit()
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        """Treat a second quick click as a click of its own: it must not get lost."""
+        self.mousePressEvent(event)
+
+    def _pass_on(self, event: QMouseEvent, kind: QEvent.Type, button: Qt.MouseButton) -> None:
+        """Give VTK's camera style a press or release, as the button that it knows."""
+        pressed = kind == QEvent.Type.MouseButtonPress
+        self._passing = button if pressed else None
+        self.set_orbiting(pressed)
+        held = button if pressed else Qt.MouseButton.NoButton
+        replayed = QMouseEvent(
+            kind, event.position(), event.globalPosition(), button, held, event.modifiers()
+        )
+        if pressed:
+            super().mousePressEvent(replayed)
+        else:
+            super().mouseReleaseEvent(replayed)
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Zoom."""
+        self.set_orbiting(True)
+        self._zoom_rest.start()
+        super().wheelEvent(event)
+
+    def _hover(self, at: QPointF) -> None:
+        marker = self.layer.nearest(at, REACH)
+        name = marker.name if marker is not None else None
+        if marker is not None:
+            self.setCursor(Qt.CursorShape.PointingHandCursor)
+        elif self.pick(at) is not None:
+            self.setCursor(Qt.CursorShape.CrossCursor)
+        else:
+            self.unsetCursor()
+        if name != self._hovered:
+            self._hovered = name
+            self.hovered.emit(name)
+
+    def leaveEvent(self, event: QEvent) -> None:
+        """Nothing is hovered any more."""
+        super().leaveEvent(event)
+        if self._hovered is not None:
+            self._hovered = None
+            self.hovered.emit(None)
+
+    def event(self, event: QEvent) -> bool:
+        """Claim Esc while a landmark is dragged, before the window's shortcut takes it."""
+        if (
+            event.type() == QEvent.Type.ShortcutOverride
+            and self._is_dragging
+            and event.key() == Qt.Key.Key_Escape
+        ):
+            event.accept()
+            return True
+        return super().event(event)
+
+    @property
+    def _is_dragging(self) -> bool:
+        return self._press is not None and self._press.dragging
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Cancel a drag with Esc; VTK's own keys (w, s, 3, p, ...) are not for our users."""
+        if event.key() == Qt.Key.Key_Escape and self._is_dragging:
+            self._press = None
+            self.drag_cancelled.emit()
+        elif event.key() in _ARROWS:
+            steps = 10 if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 1
+            across, upwards = _ARROWS[event.key()]
+            self.nudged.emit(across * steps, upwards * steps)
+        else:
+            event.ignore()
+
+    def keyReleaseEvent(self, event: QKeyEvent) -> None:
+        """Keep VTK out of it."""
+        event.ignore()
+
+    # Drag and drop
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:
+        """Take files from the outside."""
+        if any(url.isLocalFile() for url in event.mimeData().urls()):
+            event.acceptProposedAction()
+
+    def dropEvent(self, event: QDropEvent) -> None:
+        """Say which files were dropped here."""
+        paths = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
+        if paths:
+            event.acceptProposedAction()
+            self.files_dropped.emit(paths)

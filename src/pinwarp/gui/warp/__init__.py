@@ -1,0 +1,1 @@
+"""The warp on the screen: live, judged, taken apart."""

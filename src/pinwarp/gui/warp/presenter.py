@@ -1,0 +1,150 @@
+"""What of the warp is applied: asked for in the menu and the panel, said in the status bar."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from qtpy.QtCore import QObject
+from qtpy.QtGui import QAction, QActionGroup, QGuiApplication
+from qtpy.QtWidgets import QLabel
+
+from pinwarp.core.components import Components
+from pinwarp.gui.style.icons import icon
+from pinwarp.gui.warp.blend_player import BlendPlayer
+from pinwarp.gui.warp.panel import WarpPanel
+from pinwarp.gui.warp.quality import QualityPresenter
+from pinwarp.session import edits
+from pinwarp.session.editor import Editor
+from pinwarp.session.judging.warp_figures import figures_table
+from pinwarp.session.outputs.exports import applied_in_words
+
+COMPONENT_ACTIONS = {part: f"apply_{part.name.lower()}" for part in Components}
+
+
+class WarpPresenter(QObject):
+    """Wires the editor to what shows and changes the applied warp.
+
+    Parameters
+    ----------
+    editor
+        The truth.
+    panel
+        Shows the applied warp and what it does.
+    quality
+        Where the figures come from.
+    actions
+        The window's actions by key.
+    say
+        Says a sentence in passing.
+    parent
+        The window.
+    """
+
+    def __init__(
+        self,
+        editor: Editor,
+        panel: WarpPanel,
+        quality: QualityPresenter,
+        actions: Mapping[str, QAction],
+        say: Callable[[str], None],
+        parent: QObject,
+    ) -> None:
+        super().__init__(parent)
+        self._editor = editor
+        self._panel = panel
+        self._quality = quality
+        self._actions = actions
+        self._say = say
+        self.note = QLabel()
+        self.player = BlendPlayer(editor, self)
+        self._connect()
+        self._on_session()
+        self._on_view()
+        self._on_quality()
+
+    def _connect(self) -> None:
+        actions, editor, panel = self._actions, self._editor, self._panel
+        choices = QActionGroup(self)
+        for part, key in COMPONENT_ACTIONS.items():
+            choices.addAction(actions[key])
+            actions[key].triggered.connect(lambda _checked=False, part=part: self._apply(part))
+        panel.components_requested.connect(self._apply)
+        panel.blend_previewed.connect(self._preview)
+        panel.blend_requested.connect(self._blend)
+        panel.grid_requested.connect(lambda kind: editor.look(grid=kind))
+        panel.grid_share_requested.connect(lambda share: editor.look(grid_share=share))
+        panel.copy_requested.connect(self._copy)
+        actions["copy_figures"].triggered.connect(lambda _checked=False: self._copy())
+        actions["play_blend"].triggered.connect(self._play)
+        self.player.playing_changed.connect(self._on_playing)
+        editor.session_changed.connect(self._on_session)
+        editor.view_changed.connect(self._on_view)
+        self._quality.quality_changed.connect(self._on_quality)
+
+    def shut_down(self) -> None:
+        """Let go of the editor."""
+        self.player.shut_down()
+        self._editor.session_changed.disconnect(self._on_session)
+        self._editor.view_changed.disconnect(self._on_view)
+        self._quality.quality_changed.disconnect(self._on_quality)
+
+    # What changed
+
+    def _on_session(self, _changed: object = None) -> None:
+        session = self._editor.session
+        self._actions[COMPONENT_ACTIONS[session.components]].setChecked(True)
+        self._panel.show_session(session)
+        self._actions["play_blend"].setEnabled(
+            bool(session.pairs) and session.components is not Components.RIGID
+        )
+        # What is not the whole warp must not be taken for it, here or in a file.
+        whole = session.components is Components.FULL and session.blend == 1
+        if self.player.is_playing:
+            self.note.setText("Playing the blend: Esc or a click stops it")
+        else:
+            self.note.setText("" if whole else f"Shown and exported: {applied_in_words(session)}")
+
+    def _on_view(self, _changed: object = None) -> None:
+        self._panel.show_view(self._editor.view)
+
+    def _on_quality(self, _changed: object = None) -> None:
+        self._actions["copy_figures"].setEnabled(self._quality.quality is not None)
+        self._panel.show_quality(self._quality.quality)
+
+    def _on_playing(self, playing: bool) -> None:
+        action = self._actions["play_blend"]
+        action.setChecked(playing)
+        action.setIcon(icon("stop" if playing else "play"))
+        self._on_session()
+
+    # What the user does
+
+    def _apply(self, components: Components) -> None:
+        session = edits.set_components(self._editor.committed, components)
+        self._editor.commit(session, f"Apply {applied_in_words(session)}")
+        self._editor.look(overlay=True)
+
+    def _preview(self, blend: float) -> None:
+        # What is hidden cannot be seen to change.
+        self._editor.look(overlay=True)
+        self._editor.preview(edits.set_blend(self._editor.committed, blend))
+
+    def _blend(self, blend: float, is_step: bool) -> None:
+        session = edits.set_blend(self._editor.committed, blend)
+        # Many steps of the keyboard are one to undo.
+        self._editor.commit(session, f"Blend {blend:.0%}", "blend" if is_step else None)
+        self._editor.look(overlay=True)
+
+    def _play(self, wanted: bool) -> None:
+        if wanted:
+            self._editor.look(overlay=True)
+            self.player.play()
+        else:
+            self.player.stop()
+
+    def _copy(self) -> None:
+        quality = self._quality.quality
+        if quality is not None:
+            table = figures_table(quality, self._editor.committed.unit)
+            QGuiApplication.clipboard().setText(table)
+            self._say("Copied the figures for a spreadsheet.")

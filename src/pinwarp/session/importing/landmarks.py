@@ -1,0 +1,344 @@
+"""What an import of landmarks would do, before it is done: which becomes which, and how."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from pathlib import Path
+
+from pinwarp.core.landmarks import Landmark, Role, Side
+from pinwarp.io.landmark_files import LandmarkReading
+from pinwarp.session import edits
+from pinwarp.session.importing.fit import Fit
+from pinwarp.session.naming import free_names, is_automatic
+from pinwarp.session.session import Session
+
+_MOST_NAMED = 3
+
+
+class Pairing(StrEnum):
+    """How landmarks of a file find those of the session."""
+
+    BY_NAME = "by name"
+    BY_ORDER = "by order"
+    AS_NEW = "as new"
+
+
+class Fate(StrEnum):
+    """What becomes of a landmark that arrives; the value is said of one and of several."""
+
+    PAIRS = "pairs up"
+    PLACES = "is placed"
+    REPLACES = "replaces a position"
+    SAME = "is there already"
+    NEW = "is new"
+
+    @property
+    def of_several(self) -> str:
+        """The same, said of several."""
+        return {
+            Fate.PAIRS: "pair up",
+            Fate.PLACES: "are placed",
+            Fate.REPLACES: "replace a position",
+            Fate.SAME: "are there already",
+            Fate.NEW: "are new",
+        }[self]
+
+
+@dataclass(frozen=True)
+class Arrival:
+    """One landmark of a file and what becomes of it.
+
+    Parameters
+    ----------
+    landmark
+        As the file has it, read in the chosen way.
+    target
+        The name it has in the session then.
+    fate, words
+        What happens, as a kind and in words.
+    """
+
+    landmark: Landmark
+    target: str
+    fate: Fate
+    words: str
+
+
+@dataclass(frozen=True)
+class Arriving:
+    """A landmark file that was read, on its way into a session.
+
+    Parameters
+    ----------
+    path, reading
+        The file and what is in it.
+    side
+        The side that it belongs to; None where it holds pairs.
+    fits
+        For each side with a mesh, the ways to read its positions: as they are stored first,
+        and others only where they lie much better on the mesh.
+    """
+
+    path: Path
+    reading: LandmarkReading
+    side: Side | None
+    fits: Mapping[Side, tuple[Fit, ...]] = field(default_factory=dict)
+
+    @property
+    def sides(self) -> tuple[Side, ...]:
+        """The sides that it fills."""
+        return tuple(Side) if self.side is None else (self.side,)
+
+    @property
+    def doubtful(self) -> tuple[Side, ...]:
+        """The sides where positions seem to be in another frame or unit than the mesh."""
+        return tuple(side for side in self.sides if len(self.fits.get(side, ())) > 1)
+
+    @property
+    def label(self) -> str:
+        """What Undo calls the import."""
+        return "Import pairs" if self.side is None else f"Import {self.side.value} landmarks"
+
+
+@dataclass(frozen=True)
+class ImportChoice:
+    """How a file is brought in.
+
+    Parameters
+    ----------
+    pairing
+        How its landmarks find those of the session.
+    fits
+        How the positions of a side are read; as they are stored where nothing is said.
+    """
+
+    pairing: Pairing
+    fits: Mapping[Side, Fit] = field(default_factory=dict)
+
+
+def awaiting(session: Session, side: Side) -> tuple[str, ...]:
+    """Return the names of the pairs that lack a position on one side, in order.
+
+    Examples
+    --------
+    >>> awaiting(Session(landmarks=(Landmark("a", (1, 2, 3)),)), Side.DESTINATION)
+    ('a',)
+    """
+    return tuple(
+        landmark.name
+        for landmark in session.landmarks
+        if landmark.role is Role.PAIR and landmark.position(side) is None
+    )
+
+
+def default_pairing(session: Session, arriving: Arriving) -> Pairing:
+    """Return how a file most likely means its landmarks.
+
+    By name where names match; else by order, where as many landmarks wait for a position, or
+    where the names are mere numbers that the file may not even have had.
+
+    Examples
+    --------
+    >>> session = Session(landmarks=(Landmark("head", (1, 2, 3)),))
+    >>> reading = LandmarkReading((Landmark("S000", None, (4, 5, 6)),), False, ())
+    >>> default_pairing(session, Arriving(Path("a.pts"), reading, Side.DESTINATION)).value
+    'by order'
+    """
+    names = arriving.reading.names
+    waiting = () if arriving.side is None else awaiting(session, arriving.side)
+    if not waiting or set(names) & set(waiting):
+        return Pairing.BY_NAME
+    are_numbers = all(is_automatic(name) for name in names)
+    if len(names) == len(waiting) or are_numbers:
+        return Pairing.BY_ORDER
+    return Pairing.BY_NAME
+
+
+def can_pair(session: Session, arriving: Arriving, pairing: Pairing) -> bool:
+    """Whether a way of pairing is possible: an order needs landmarks that wait for a position."""
+    if pairing is not Pairing.BY_ORDER:
+        return True
+    return arriving.side is not None and bool(awaiting(session, arriving.side))
+
+
+def arrivals(session: Session, arriving: Arriving, choice: ImportChoice) -> tuple[Arrival, ...]:
+    """Return what becomes of each landmark of a file.
+
+    Parameters
+    ----------
+    session
+        As it is before.
+    arriving
+        The file.
+    choice
+        How it would be brought in.
+
+    Examples
+    --------
+    >>> session = Session(landmarks=(Landmark("head", (1, 2, 3)),))
+    >>> found = LandmarkReading((Landmark("head", None, (4, 5, 6)), Landmark("tip")), False, ())
+    >>> file = Arriving(Path("a.csv"), found, Side.DESTINATION)
+    >>> [x.words for x in arrivals(session, file, ImportChoice(Pairing.BY_NAME))]
+    ['pairs with head', 'new, to be placed']
+    """
+    landmarks = _read(arriving, choice)
+    names = [landmark.name for landmark in landmarks]
+    targets = _targets(session, arriving.side, names, choice.pairing)
+    known = {landmark.name: landmark for landmark in session.landmarks}
+    result = []
+    for landmark, target in zip(landmarks, targets, strict=True):
+        there = known.get(target)
+        fate, words = (
+            _newcomer(landmark, target)
+            if there is None
+            else _change(landmark, there, arriving.sides)
+        )
+        result.append(Arrival(landmark, target, fate, words))
+    return tuple(result)
+
+
+def imported(session: Session, arriving: Arriving, choice: ImportChoice) -> Session:
+    """Return the session with a file brought in.
+
+    Raises
+    ------
+    LandmarkError
+        When a coordinate becomes too large for a number.
+
+    Examples
+    --------
+    >>> session = Session(landmarks=(Landmark("head", (1, 2, 3)),))
+    >>> found = LandmarkReading((Landmark("S000", None, (4, 5, 6)),), False, ())
+    >>> file = Arriving(Path("a.pts"), found, Side.DESTINATION)
+    >>> imported(session, file, ImportChoice(Pairing.BY_ORDER)).landmark("head").destination
+    (4.0, 5.0, 6.0)
+    """
+    landmarks = _read(arriving, choice)
+    names = [landmark.name for landmark in landmarks]
+    targets = _targets(session, arriving.side, names, choice.pairing)
+    renamed = [replace(x, name=name) for x, name in zip(landmarks, targets, strict=True)]
+    if arriving.side is None:
+        return edits.import_pairs(session, renamed)
+    return edits.import_side(session, arriving.side, renamed)
+
+
+def is_plain(session: Session, arriving: Arriving) -> bool:
+    """Whether an import leaves nothing to ask and nothing to tell before it is done.
+
+    That is a whole file without remarks, whose positions lie as well on the mesh as any, and
+    whose landmarks all match ones that wait for a position, or are all new where none waits.
+    """
+    reading = arriving.reading
+    if reading.skipped or reading.notes or arriving.doubtful:
+        return False
+    if default_pairing(session, arriving) is not Pairing.BY_NAME:
+        return False
+    fates = {x.fate for x in arrivals(session, arriving, ImportChoice(Pairing.BY_NAME))}
+    if Fate.REPLACES in fates:
+        return False
+    if fates == {Fate.NEW}:
+        return arriving.side is None or not awaiting(session, arriving.side)
+    return Fate.NEW not in fates
+
+
+def left_waiting(session: Session, arriving: Arriving, found: Iterable[Arrival]) -> tuple[str, ...]:
+    """Return the pairs that still lack a position when others have found theirs.
+
+    Examples
+    --------
+    >>> session = Session(landmarks=(Landmark("a", (1, 2, 3)), Landmark("b", (4, 5, 6))))
+    >>> reading = LandmarkReading((Landmark("a", None, (7, 8, 9)),), False, ())
+    >>> file = Arriving(Path("a.csv"), reading, Side.DESTINATION)
+    >>> left_waiting(session, file, arrivals(session, file, ImportChoice(Pairing.BY_NAME)))
+    ('b',)
+    """
+    met = {x.target for x in found if x.fate is Fate.PAIRS}
+    if arriving.side is None or not met:
+        return ()
+    return tuple(name for name in awaiting(session, arriving.side) if name not in met)
+
+
+def summary(found: Iterable[Arrival], waiting: Sequence[str] = ()) -> str:
+    """Say what becomes of all together, and name those that are few.
+
+    Parameters
+    ----------
+    found
+        What becomes of each.
+    waiting
+        Pairs of the session that nothing came for.
+
+    Examples
+    --------
+    >>> fates = zip("abcdef", [Fate.PAIRS] * 5 + [Fate.NEW])
+    >>> summary([Arrival(Landmark(name), name, fate, "") for name, fate in fates], ["g"])
+    '5 pair up, 1 is new (f). 1 of the session still waits (g).'
+    """
+    names: dict[Fate, list[str]] = {}
+    for arrival in found:
+        names.setdefault(arrival.fate, []).append(arrival.landmark.name)
+    parts = []
+    for fate in Fate:
+        who = names.get(fate, [])
+        if who:
+            few = _named(who) if len(names) > 1 else ""
+            parts.append(f"{len(who):,} {fate.value if len(who) == 1 else fate.of_several}{few}")
+    words = f"{', '.join(parts)}."
+    if waiting:
+        wait = "still waits" if len(waiting) == 1 else "still wait"
+        words += f" {len(waiting):,} of the session {wait}{_named(waiting)}."
+    return words
+
+
+def _named(names: Sequence[str]) -> str:
+    return f" ({', '.join(names)})" if len(names) <= _MOST_NAMED else ""
+
+
+def _read(arriving: Arriving, choice: ImportChoice) -> tuple[Landmark, ...]:
+    landmarks = arriving.reading.landmarks
+    for side, fit in choice.fits.items():
+        landmarks = fit.applied(landmarks, side)
+    return landmarks
+
+
+def _targets(
+    session: Session, side: Side | None, names: Sequence[str], pairing: Pairing
+) -> list[str]:
+    """Return the name in the session of each landmark that arrives."""
+    if pairing is Pairing.BY_NAME:
+        return list(names)
+    waiting = () if side is None or pairing is Pairing.AS_NEW else awaiting(session, side)
+    taken = [landmark.name for landmark in session.landmarks]
+    targets = list(waiting[: len(names)])
+    return targets + free_names(names[len(targets) :], taken)
+
+
+def _newcomer(landmark: Landmark, target: str) -> tuple[Fate, str]:
+    words = "new" if target == landmark.name else f"new, called {target}"
+    if landmark.source is None and landmark.destination is None:
+        words += ", to be placed"
+    return Fate.NEW, words
+
+
+def _change(landmark: Landmark, there: Landmark, sides: Sequence[Side]) -> tuple[Fate, str]:
+    """Say what an arriving landmark does to the one that it becomes."""
+    name = there.name
+    changed = [
+        side
+        for side in sides
+        if (at := landmark.position(side)) is not None and at != there.position(side)
+    ]
+    if not changed:
+        return Fate.SAME, f"changes nothing of {name}"
+    replaced = [side for side in changed if there.position(side) is not None]
+    locked = ", which is locked" if there.locked else ""
+    if replaced:
+        which = "both positions" if len(replaced) > 1 else f"the {replaced[0].value} position"
+        which = "the position" if len(sides) == 1 else which
+        return Fate.REPLACES, f"replaces {which} of {name}{locked}"
+    both = all(there.position(side) is not None or side in changed for side in Side)
+    if both and there.role is Role.PAIR:
+        return Fate.PAIRS, f"pairs with {name}"
+    return Fate.PLACES, f"places {name}"

@@ -1,0 +1,1 @@
+"""How good a warp is, and what says so."""

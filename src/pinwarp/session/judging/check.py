@@ -1,0 +1,228 @@
+"""How good the warp of a session is, in figures and sentences: what a report prints."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from pinwarp.core.errors import PinwarpError
+from pinwarp.core.findings import Finding, FindingKind
+from pinwarp.core.folds import Folds, folds_of
+from pinwarp.core.jacobian import determinants, jacobians
+from pinwarp.core.landmarks import Side
+from pinwarp.core.mesh import Mesh
+from pinwarp.core.spline import Spline
+from pinwarp.core.surface_distance import DistanceFigures, SurfaceIndex
+from pinwarp.io.meshes import MeshFile
+from pinwarp.session.judging.quality import NamedFinding, named_findings, quality_of
+from pinwarp.session.session import Session
+from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+
+FLAGGED = frozenset(
+    {
+        FindingKind.MIRRORED,
+        FindingKind.SWAPPED,
+        FindingKind.INCONSISTENT,
+        FindingKind.SUSPECT,
+        FindingKind.CONFLICT,
+        FindingKind.FOLD,
+    }
+)
+"""What should be put right before the warp is used; the rest is only worth knowing."""
+
+
+@dataclass(frozen=True)
+class PairFigures:
+    """What is known about one pair; lengths in the unit of the session, NaN where unknown.
+
+    Attributes
+    ----------
+    name
+        The landmark.
+    residual
+        Distance of the warped source landmark from its destination.
+    leave_one_out
+        The same with the pair left out of the solve.
+    standardised
+        That error by how far it may be expected to be: 1 is ordinary, 3 is suspicious.
+    """
+
+    name: str
+    residual: float
+    leave_one_out: float = math.nan
+    standardised: float = math.nan
+
+
+@dataclass(frozen=True)
+class Check:
+    """The figures of a session; lengths in its unit, None where there is no such figure.
+
+    Attributes
+    ----------
+    pairs
+        In the order of the session.
+    rms_residual, rms_leave_one_out
+        Root mean squares over the pairs.
+    flexibility
+        The share of non-affine freedom that the penalty leaves.
+    suggested_penalty
+        The penalty with the least leave-one-out error; None too where the data ask for none.
+    folded_vertices
+        How many vertices of the source mesh lie where the warp folds.
+    distance
+        Of the warped source from the surface of the destination.
+    findings
+        What was noticed, the flagged first.
+    notes
+        What was noticed about the files.
+
+    Examples
+    --------
+    >>> from pinwarp.io.samples import sample_session
+    >>> from pinwarp.session.keeping.files import read_session
+    >>> checked = check(read_session(sample_session()))
+    >>> checked.pairs[0].name, round(checked.distance.mean, 2), checked.as_json()["flagged"]
+    ('fovea_capitis', 0.73, False)
+    """
+
+    pairs: tuple[PairFigures, ...]
+    rms_residual: float
+    rms_leave_one_out: float | None
+    flexibility: float | None
+    suggested_penalty: float | None
+    folded_vertices: int | None
+    distance: DistanceFigures | None
+    findings: tuple[NamedFinding, ...]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def is_flagged(self) -> bool:
+        """Whether anything should be put right before the warp is used."""
+        return any(is_flagged(named.finding) for named in self.findings)
+
+    def as_json(self) -> dict[str, Any]:
+        """Return all of it as plain values for JSON; figures that are not known are None."""
+        return {
+            "flagged": self.is_flagged,
+            "rms_residual": self.rms_residual,
+            "rms_leave_one_out": self.rms_leave_one_out,
+            "flexibility": self.flexibility,
+            "suggested_penalty": self.suggested_penalty,
+            "folded_vertices": self.folded_vertices,
+            "distance": None if self.distance is None else asdict(self.distance),
+            "findings": [
+                {
+                    "kind": named.finding.kind.value,
+                    "flagged": is_flagged(named.finding),
+                    "landmarks": list(named.names),
+                    "words": named.sentence,
+                }
+                for named in self.findings
+            ],
+            "notes": list(self.notes),
+            "pairs": [
+                {
+                    key: value if isinstance(value, str) or math.isfinite(value) else None
+                    for key, value in asdict(pair).items()
+                }
+                for pair in self.pairs
+            ],
+        }
+
+
+def is_flagged(finding: Finding) -> bool:
+    """Say whether something should be put right before the warp is used.
+
+    Examples
+    --------
+    >>> [is_flagged(Finding(kind, (), 1.0)) for kind in (FindingKind.FOLD, FindingKind.POLE)]
+    [True, False]
+    """
+    return finding.kind in FLAGGED
+
+
+def check(session: Session) -> Check:
+    """Judge the warp of a session: its pairs, and what it does to the meshes that are there.
+
+    Parameters
+    ----------
+    session
+        Folds are looked for where its source mesh is there, distances measured where both are.
+
+    Raises
+    ------
+    PinwarpError
+        When there is no pair, or the solve fails.
+
+    Examples
+    --------
+    >>> from pinwarp.io.samples import sample_session
+    >>> from pinwarp.session.keeping.files import read_session
+    >>> checked = check(read_session(sample_session()))
+    >>> len(checked.pairs), checked.is_flagged, checked.folded_vertices
+    (16, False, 0)
+    """
+    # Without its mesh, which the solver would warp in single precision.
+    result = WarpSolver().solve(WarpInputs.of(replace(session, source=None)))
+    quality = quality_of(result)
+    if result.shown is None or result.residuals is None or quality is None:
+        raise PinwarpError(
+            result.problem or "There is no pair yet: place a landmark on both meshes first."
+        )
+    names = [pair.name for pair in session.pairs]
+    left_out = quality.left_out
+    unknown = np.full(len(names), np.nan)
+    columns = (
+        result.residuals,
+        unknown if left_out is None else left_out.distances,
+        unknown if left_out is None else left_out.standardised,
+    )
+    source, destination = (session.mesh(side) for side in Side)
+    folds = None if source is None else _folds(result.shown, source)
+    findings = [*quality.findings_in(session)]
+    if folds is not None:
+        patches = (patch.finding for patch in folds.patches)
+        findings += named_findings(patches, result.inputs, session)
+    return Check(
+        pairs=tuple(
+            PairFigures(name, *(float(x) for x in row))
+            for name, row in zip(names, np.column_stack(columns), strict=True)
+        ),
+        rms_residual=float(np.sqrt(np.mean(result.residuals**2))),
+        rms_leave_one_out=_known(None if left_out is None else left_out.rms),
+        flexibility=_known(result.flexibility),
+        suggested_penalty=None if quality.curve is None else quality.curve.suggested,
+        folded_vertices=None if folds is None else folds.count,
+        distance=None
+        if source is None or destination is None
+        else _distance(result.shown, source, destination),
+        # Sorted is stable: the order within is kept.
+        findings=tuple(sorted(findings, key=lambda named: not is_flagged(named.finding))),
+        notes=_about_files(session),
+    )
+
+
+def _folds(spline: Spline, mesh: Mesh) -> Folds:
+    return folds_of(determinants(jacobians(spline, mesh.vertices)), mesh, spline)
+
+
+def _distance(spline: Spline, source: Mesh, destination: Mesh) -> DistanceFigures:
+    distances = SurfaceIndex(destination).distances(spline.evaluate(source.vertices))
+    return DistanceFigures.of(distances[source.on_surface])
+
+
+def _about_files(session: Session) -> tuple[str, ...]:
+    notes = []
+    for file in (session.source, session.destination):
+        if isinstance(file, MeshFile):
+            notes += [f"{file.path.name}: {note}" for note in file.notes]
+        elif file is not None:
+            notes.append(f"{file.path.name}: It is not there. Was it moved or renamed?")
+    return tuple(notes)
+
+
+def _known(value: float | None) -> float | None:
+    return None if value is None or math.isnan(value) else float(value)

@@ -1,0 +1,239 @@
+"""How far the pairs of a session are to be trusted: figures and findings, with their landmarks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pinwarp.core.alignment import AffineParts, decompose
+from pinwarp.core.components import Components, applied, as_drawn
+from pinwarp.core.factor import SourceFactor
+from pinwarp.core.findings import Finding, FindingKind
+from pinwarp.core.landmarks import Position
+from pinwarp.core.quality import (
+    LeaveOneOut,
+    PenaltyCurve,
+    bending_energy,
+    leave_one_out,
+    penalty_curve,
+)
+from pinwarp.core.spline import PenaltyConvention, Spline, solve
+from pinwarp.core.suspects import is_mirrored, suspects, swapped_pairs
+from pinwarp.session.session import Session
+from pinwarp.session.warp.pair_names import pair_names
+from pinwarp.session.warp.solver import WarpInputs, WarpResult
+
+Matrix = NDArray[np.float64]
+
+# With fewer there is nothing to leave out: an affine map meets four.
+LEAST_PAIRS = 5
+
+
+@dataclass(frozen=True)
+class NamedFinding:
+    """A finding about landmarks of a session.
+
+    Attributes
+    ----------
+    finding
+        The fact.
+    names
+        The landmarks concerned, the more suspicious first; none where it concerns all.
+    sentence
+        The fact in words.
+    """
+
+    finding: Finding
+    names: tuple[str, ...]
+    sentence: str
+
+
+@dataclass(frozen=True, eq=False)
+class Quality:
+    """What the pairs say about one another.
+
+    Attributes
+    ----------
+    inputs
+        The warp that is judged.
+    left_out
+        Leave-one-out errors at the session's penalty; None with fewer than five pairs, and
+        where the published convention at a penalty above 0 has no such figure.
+    curve
+        Leave-one-out error, residual and flexibility over the penalty of the regularising
+        convention.
+    findings
+        About the pairs, the gravest first: a mirrored set, swapped pairs, inconsistent
+        neighbours and suspects, then what the solve noticed, then isolated landmarks.
+    affine
+        The best affine fit of the pairs, taken apart about the middle of the source landmarks.
+    energy : (3,) float64
+        The warp's bending energy in x, y and z.
+    rms_by_components
+        How far each part of the warp leaves the pairs apart, as root mean square in destination
+        mesh units: what it does not explain. Without its pose the warp leaves as much as in full.
+    rank
+        How many directions the source landmarks span; below 3 a similarity fills in the rest.
+    """
+
+    inputs: WarpInputs
+    left_out: LeaveOneOut | None
+    curve: PenaltyCurve | None
+    findings: tuple[Finding, ...]
+    affine: AffineParts
+    energy: Matrix
+    rms_by_components: Mapping[Components, float]
+    rank: int
+
+    def findings_in(self, session: Session) -> tuple[NamedFinding, ...]:
+        """Return the findings by name, as far as their pairs are still there.
+
+        Parameters
+        ----------
+        session
+            The session as it is now, which may have moved on since the pairs were judged.
+
+        Examples
+        --------
+        >>> from pinwarp.core.landmarks import Landmark
+        >>> from pinwarp.session.warp.solver import WarpSolver
+        >>> places = [(0, 0, 0), (0, 0, 0), (9, 0, 0), (0, 9, 0), (0, 0, 9)]
+        >>> ends = [(0, 0, 0), (2, 0, 0), *places[2:]]
+        >>> session = Session(landmarks=tuple(map(Landmark, "abcde", places, ends)))
+        >>> judged = quality_of(WarpSolver().solve(WarpInputs.of(session)))
+        >>> judged.findings_in(session)[0].sentence
+        'a and b lie at the same place on the source but 2 mm apart on the destination.'
+        """
+        return named_findings(self.findings, self.inputs, session)
+
+
+def named_findings(
+    findings: Iterable[Finding], inputs: WarpInputs, session: Session
+) -> tuple[NamedFinding, ...]:
+    """Return findings by name, as far as their pairs are still there.
+
+    Parameters
+    ----------
+    findings
+        About the pairs of a warp.
+    inputs
+        What that warp was computed from.
+    session
+        The session as it is now.
+
+    Examples
+    --------
+    >>> from pinwarp.core.landmarks import Landmark
+    >>> session = Session(landmarks=(Landmark("fovea", (0, 0, 0), (1, 0, 0)),))
+    >>> finding = Finding(FindingKind.ISOLATED, (0,), 70.0, (3.0,))
+    >>> [x.names for x in named_findings([finding], WarpInputs.of(session), session)]
+    [('fovea',)]
+    """
+    names = pair_names(inputs, session)
+    words = [name or "" for name in names]
+    named = []
+    for finding in findings:
+        concerned = tuple(name for row in finding.rows if (name := names[row]) is not None)
+        if len(concerned) == len(finding.rows):
+            sentence = finding.describe(words, session.unit)
+            named.append(NamedFinding(finding, concerned, sentence))
+    return tuple(named)
+
+
+def quality_of(result: WarpResult) -> Quality | None:
+    """Judge the pairs of a warp.
+
+    Parameters
+    ----------
+    result
+        A solved warp.
+
+    Returns
+    -------
+    Quality or None
+        None where there is no warp.
+    """
+    factor, spline, inputs = result.factor, result.spline, result.inputs
+    if factor is None or spline is None:
+        return None
+    destination = np.array(inputs.destination)
+    left_out = curve = None
+    enough = len(inputs.source) >= LEAST_PAIRS and len(factor.poles) > 0
+    if enough:
+        curve = penalty_curve(factor, destination)
+        regular = inputs.convention is PenaltyConvention.REGULARISING or inputs.penalty == 0
+        if regular:
+            left_out = leave_one_out(factor, destination, inputs.penalty)
+    found = _about_pairs(factor, inputs.source, destination) if enough else ()
+    isolated = tuple(finding for finding in found if not finding.is_grave)
+    grave = tuple(finding for finding in found if finding.is_grave)
+    return Quality(
+        inputs=inputs,
+        left_out=left_out,
+        curve=curve,
+        findings=(*grave, *spline.findings, *isolated),
+        affine=decompose(solve(factor, destination, np.inf).affine, factor.centre),
+        energy=bending_energy(spline),
+        rms_by_components=_rms_by_components(factor, spline, destination),
+        rank=factor.rank,
+    )
+
+
+def _rms_by_components(
+    factor: SourceFactor, spline: Spline, destination: Matrix
+) -> dict[Components, float]:
+    left = {}
+    for part in {as_drawn(part) for part in Components}:
+        misses = applied(spline, factor, destination, part).evaluate(factor.source) - destination
+        left[part] = float(np.sqrt(np.mean(np.sum(misses * misses, axis=1))))
+    return {part: left[as_drawn(part)] for part in Components}
+
+
+def penalty_advice(curve: PenaltyCurve) -> str:
+    """Say why a curve suggests no penalty, in words for the user.
+
+    Parameters
+    ----------
+    curve
+        The figures over the penalty.
+
+    Returns
+    -------
+    str
+        Empty where a penalty is suggested, or where no pair can be left out.
+
+    Examples
+    --------
+    >>> from pinwarp.core.factor import factorise
+    >>> source = np.random.default_rng(0).normal(size=(30, 3))
+    >>> penalty_advice(penalty_curve(factorise(source), source + 0.1 * source**2))
+    'The least leave-one-out error is at no penalty: the pairs ask for none.'
+    """
+    if curve.is_affine:
+        return "An affine map meets every pair: the penalty changes nothing."
+    first, last = curve.leave_one_out[[0, -1]].tolist()
+    if curve.suggested is not None or not (np.isfinite(first) and np.isfinite(last)):
+        return ""
+    if first <= last:
+        return "The least leave-one-out error is at no penalty: the pairs ask for none."
+    return "The least leave-one-out error is at the affine fit: the pairs ask for no bending."
+
+
+def _about_pairs(
+    factor: SourceFactor, source: tuple[Position, ...], destination: Matrix
+) -> tuple[Finding, ...]:
+    """Find what is wrong, at penalty 0: a penalty would spread one pair's error over others."""
+    if is_mirrored(source, destination):
+        # Nothing else can be said before that is put right.
+        return (Finding(FindingKind.MIRRORED, (), 0.0),)
+    swapped = swapped_pairs(factor, destination)
+    explained = {row for finding in swapped for row in finding.rows}
+    # With them put right, so that nobody is blamed for his neighbour's exchange.
+    mended = destination.copy()
+    for finding in swapped:
+        mended[list(finding.rows)] = destination[list(finding.rows[::-1])]
+    others = suspects(factor, mended)
+    return (*swapped, *(x for x in others if not explained.intersection(x.rows)))

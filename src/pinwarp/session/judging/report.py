@@ -1,0 +1,196 @@
+"""What a report says about a session: figures, findings, and what they belong to."""
+
+from __future__ import annotations
+
+import platform
+from datetime import datetime
+
+import numpy as np
+
+from pinwarp.core.landmarks import Side
+from pinwarp.core.quality import PenaltyCurve
+from pinwarp.io.chart import Line, Mark, line_chart
+from pinwarp.io.meshes import MeshFile
+from pinwarp.io.report import Figure, Report
+from pinwarp.session.judging.quality import Quality
+from pinwarp.session.judging.survey import Survey
+from pinwarp.session.outputs.exports import applied_in_words
+from pinwarp.session.session import Session
+from pinwarp.session.warp.solver import WarpResult
+from pinwarp.version import __version__
+
+LEFT_OUT_COLOUR, RESIDUAL_COLOUR, SUGGESTED_COLOUR = "#0072B2", "#8b919a", "#009E73"
+_AXES = "xyz"
+
+
+def report_of(
+    title: str,
+    session: Session,
+    result: WarpResult,
+    quality: Quality,
+    survey: Survey,
+    made: datetime,
+) -> Report:
+    """Collect what is known about a session's warp.
+
+    Parameters
+    ----------
+    title
+        What the session is called.
+    session
+        The session; the others were computed for it.
+    result, quality, survey
+        Its warp, what its pairs say about one another, and what was found all over the source.
+    made
+        When the report is made.
+
+    Returns
+    -------
+    Report
+    """
+    names = [pair.name for pair in session.pairs]
+    unit = session.unit
+    # A stable sort: folds come behind what causes them, what is only isolated last.
+    found = sorted((*quality.findings, *survey.findings), key=lambda one: not one.is_grave)
+    return Report(
+        title=title,
+        made=f"Made by pinwarp {__version__} on {made:%d %B %Y at %H:%M} "
+        f"(Python {platform.python_version()}, numpy {np.__version__})",
+        facts=_facts(session, result),
+        findings=tuple(finding.describe(names, unit) for finding in found),
+        figures=(
+            *_of_pairs(session, result, quality),
+            *_of_surfaces(survey, unit),
+            *_of_warp(quality, unit),
+        ),
+        remarks=(
+            (
+                "Pairs",
+                "Residual: how far the warped source landmark is from its destination. "
+                "Left out: the same when the pair is left out of the solve. Standardised: that "
+                "error in units of what is usual for its surroundings; from 2.5 on it is "
+                "suspicious.",
+            ),
+            (
+                "Distances",
+                "Between the surfaces as applied: from every vertex of one to the nearest place on "
+                "the other, not weighted by area.",
+            ),
+            (
+                "Affine part",
+                "The best affine fit of the pairs, taken apart: it stretches, turns "
+                "and moves. Translation is that of the middle of the source landmarks.",
+            ),
+        ),
+        chart="" if quality.curve is None else _chart(quality.curve, session, result),
+    )
+
+
+def _facts(session: Session, result: WarpResult) -> tuple[tuple[str, str], ...]:
+    unit = session.unit
+    facts = [(f"{side.value.capitalize()} mesh", _mesh_text(session, side)) for side in Side]
+    penalty = session.warping_penalty
+    facts += [
+        ("Pairs", f"{len(session.pairs)} of {len(session.landmarks)} landmarks"),
+        ("Unit", unit),
+        (
+            "Warping penalty",
+            "infinite (the affine fit)" if np.isinf(penalty) else f"{penalty:.6g} {unit}",
+        ),
+        ("Convention", session.convention.value),
+        ("Applied", applied_in_words(session)),
+    ]
+    if result.flexibility is not None:
+        facts.append(("Flexibility", f"{result.flexibility:.0%}"))
+    if result.rms_residual is not None:
+        facts.append(("RMS residual", f"{result.rms_residual:.4g} {unit}"))
+    return tuple(facts)
+
+
+def _mesh_text(session: Session, side: Side) -> str:
+    file = session.mesh_file(side)
+    if not isinstance(file, MeshFile):
+        return "none" if file is None else f"{file.path.name} (not found)"
+    mirrored = f", mirrored across {file.mirrored}" if file.mirrored else ""
+    scaled = f", scaled by {file.scaled:g}" if file.scaled != 1 else ""
+    return (
+        f"{file.path.name}: {len(file.mesh.vertices):,} vertices, "
+        f"{len(file.mesh.faces):,} triangles{mirrored}{scaled}; SHA-256 {file.sha256}"
+    )
+
+
+def _of_pairs(session: Session, result: WarpResult, quality: Quality) -> list[Figure]:
+    unit, left_out = session.unit, quality.left_out
+    figures = []
+    for row, pair in enumerate(session.pairs):
+        if result.residuals is not None:
+            residual = float(result.residuals[row])
+            figures.append(Figure("Pairs", pair.name, "residual", residual, unit))
+        if left_out is not None:
+            missed, unusual = float(left_out.distances[row]), float(left_out.standardised[row])
+            figures.append(Figure("Pairs", pair.name, "left out", missed, unit))
+            figures.append(Figure("Pairs", pair.name, "standardised", unusual))
+        for side in Side:
+            for axis, number in zip(_AXES, pair.position(side) or (), strict=False):
+                figures.append(Figure("Pairs", pair.name, f"{side.value} {axis}", number, unit))
+    return figures
+
+
+def _of_surfaces(survey: Survey, unit: str) -> list[Figure]:
+    figures = []
+    compared = None if survey.map is None else survey.map.comparison
+    if compared is not None:
+        for item, found in (
+            ("source to destination", compared.forward_figures),
+            ("destination to source", compared.backward_figures),
+        ):
+            for quantity, value in (
+                ("mean", found.mean),
+                ("RMS", found.rms),
+                ("95 % are below", found.percentile_95),
+                ("maximum", found.maximum),
+            ):
+                figures.append(Figure("Distances", item, quantity, value, unit))
+    if survey.folds is not None:
+        figures.append(Figure("Folds", "vertices", "folded", survey.folds.count))
+    return figures
+
+
+def _of_warp(quality: Quality, unit: str) -> list[Figure]:
+    parts = quality.affine
+    figures = [Figure("Affine part", "rotation", "angle", parts.angle, "°")]
+    for item, values, what in (
+        ("translation", parts.translation, unit),
+        ("rotation axis", parts.axis, ""),
+        ("scale", parts.scales, ""),
+        ("principal stretch", parts.principal, ""),
+    ):
+        for axis, value in zip(_AXES, values.tolist(), strict=True):
+            figures.append(Figure("Affine part", item, axis, value, what))
+    for axes, value in zip(("xy", "xz", "yz"), parts.shears.tolist(), strict=True):
+        figures.append(Figure("Affine part", "shear", axes, value))
+    for axis, value in zip(_AXES, quality.energy.tolist(), strict=True):
+        figures.append(Figure("Bending energy", "warp", axis, value, unit))
+    return figures
+
+
+def _chart(curve: PenaltyCurve, session: Session, result: WarpResult) -> str:
+    """Draw the curve on the slider's scale: what flexibility is given up."""
+    stiff = (100 * (1 - curve.flexibility)).tolist()
+    marks = []
+    if curve.suggested is not None:
+        at = float(np.interp(curve.suggested, curve.penalties, stiff))
+        words = f"suggested: {curve.suggested:.4g} {session.unit}"
+        marks.append(Mark(at, words, SUGGESTED_COLOUR))
+    elif result.flexibility is not None:
+        marks.append(Mark(100 * (1 - result.flexibility), "this warp"))
+    return line_chart(
+        [
+            Line("leave-one-out error", LEFT_OUT_COLOUR, stiff, curve.leave_one_out.tolist()),
+            Line("residual", RESIDUAL_COLOUR, stiff, curve.residual.tolist(), dashed=True),
+        ],
+        x_title="flexibility: 100 % interpolates, 0 % is affine",
+        y_title=f"RMS ({session.unit})",
+        x_ticks=[(float(x), f"{100 - x} %") for x in (0, 20, 40, 60, 80, 100)],
+        marks=marks,
+    )

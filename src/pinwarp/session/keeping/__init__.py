@@ -1,0 +1,1 @@
+"""Sessions on the disk, and work that is not saved yet."""

@@ -1,0 +1,124 @@
+"""A session's warp as a Python script, for those who go on from there."""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+
+from pinwarp.core.components import Components
+from pinwarp.core.errors import PinwarpError
+from pinwarp.io.mesh_reference import MeshReference
+from pinwarp.io.meshes import MeshFile
+from pinwarp.session.outputs.exports import applied_in_words
+from pinwarp.session.session import Session
+from pinwarp.version import __version__
+
+
+def script_of(session: Session, folder: Path) -> str:
+    """Return a script that writes the warped mesh as the session exports it.
+
+    The landmarks are in the script, with all their digits; the mesh is read from where it is.
+
+    Parameters
+    ----------
+    session
+        With a source mesh and pairs.
+    folder
+        Where the script will be: meshes below it are named relative to it, and the warped mesh
+        is written there.
+
+    Raises
+    ------
+    PinwarpError
+        When there is no source mesh or no pair.
+
+    Examples
+    --------
+    >>> from pinwarp.io.samples import sample_session
+    >>> from pinwarp.session.keeping.files import read_session
+    >>> script = script_of(read_session(sample_session()), sample_session().parent)
+    >>> [line for line in script.splitlines() if line.startswith("SOURCE_MESH")]
+    ["SOURCE_MESH = HERE / 'femur_generic.ply'"]
+    """
+    if session.source is None:
+        raise PinwarpError("There is no source mesh to warp: open one first.")
+    if not session.pairs:
+        raise PinwarpError("There is no pair yet: place a landmark on both meshes first.")
+    path = session.source.path
+    warped = f"{path.stem}_warped{path.suffix}"
+    pairs = [
+        f"    {pair.name!r}: ({pair.source!r}, {pair.destination!r})," for pair in session.pairs
+    ]
+    changes, imports = _as_seen(session.source)
+    return "\n".join(
+        [
+            f'"""Warp a mesh as pinwarp {__version__} did: {applied_in_words(session)}, '
+            f'{len(pairs)} pairs."""',
+            "",
+            *(["from dataclasses import replace"] if changes else []),
+            "from pathlib import Path",
+            "",
+            "import pinwarp",
+            *imports,
+            "",
+            "HERE = Path(__file__).resolve().parent",
+            f"SOURCE_MESH = HERE / {_relative(path, folder)!r}",
+            f"SOURCE_SHA256 = {session.source.sha256!r}",
+            f"WARPED_MESH = HERE / {warped!r}",
+            "",
+            f"# name: (source, destination), in {' '.join(session.unit.split())}",
+            "PAIRS = {",
+            *pairs,
+            "}",
+            "",
+            "mesh = pinwarp.read_mesh(SOURCE_MESH)",
+            "if mesh.sha256 != SOURCE_SHA256:",
+            '    print(f"{SOURCE_MESH} is not the file that the landmarks were placed on.")',
+            *changes,
+            "session = pinwarp.Session(",
+            "    source=mesh,",
+            "    landmarks=tuple(pinwarp.Landmark(name, *pair) for name, pair in PAIRS.items()),",
+            *(f"    {option}," for option in _options(session)),
+            ")",
+            "pinwarp.write_mesh(WARPED_MESH, pinwarp.warped_mesh(session))",
+            'print(f"Wrote {WARPED_MESH}")',
+            "",
+        ]
+    )
+
+
+def _as_seen(file: MeshFile | MeshReference) -> tuple[list[str], list[str]]:
+    """Return what scales and mirrors the mesh as the session sees it, and an import for that."""
+    changes, imports = [], []
+    if file.scaled != 1:
+        scaled = f"mesh.mesh.with_vertices({file.scaled!r} * mesh.mesh.vertices)"
+        changes.append(f"mesh = replace(mesh, mesh={scaled})")
+    if file.mirrored:
+        changes.append(f'mesh = replace(mesh, mesh=mirrored_mesh(mesh.mesh, "{file.mirrored}"))')
+        imports.append("from pinwarp.core.mirror import mirrored_mesh")
+    return changes, imports
+
+
+def _options(session: Session) -> list[str]:
+    """Return how the warp is solved and applied; what is usual goes without saying."""
+    penalty = session.warping_penalty
+    number = 'float("inf")' if math.isinf(penalty) else repr(penalty)
+    options = [
+        f"warping_penalty={number}",
+        f"convention=pinwarp.PenaltyConvention.{session.convention.name}",
+    ]
+    if session.planar:
+        options.append("planar=True")
+    if session.components is not Components.FULL:
+        options.append(f"components=pinwarp.Components.{session.components.name}")
+    if session.blend != 1:
+        options.append(f"blend={session.blend!r}")
+    return options
+
+
+def _relative(path: Path, folder: Path) -> str:
+    """Return a path as seen from a folder above it; others stay absolute."""
+    whole = Path(os.path.abspath(path))
+    base = Path(os.path.abspath(folder))
+    return (whole.relative_to(base) if whole.is_relative_to(base) else whole).as_posix()

@@ -1,0 +1,294 @@
+"""One source warped to many subjects: what is to be done, doing it, and the table of results."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from pinwarp.core.errors import FileFormatError, PinwarpError, words_of
+from pinwarp.core.landmarks import Role
+from pinwarp.io.manifest import Manifest
+from pinwarp.io.meshes import MESH_SUFFIXES
+from pinwarp.io.summary_file import SummaryRow, read_summary, write_summary
+from pinwarp.session.session import Session, to_record
+from pinwarp.session.study.subject import Outcome, Task, made_from, places_of, warp_subject
+from pinwarp.session.study.workers import Runner, WorkEnded
+
+SUMMARY = "summary.csv"
+DONE, FAILED = "done", "failed"
+# The table is written again as often; what a power cut takes away is done again.
+SECONDS_BETWEEN_SAVES = 1.0
+
+
+@dataclass(frozen=True)
+class Tally:
+    """How a batch ended.
+
+    Attributes
+    ----------
+    done, unchanged, failed
+        Numbers of subjects.
+    total
+        All of them; more than the sum of the others where something is left to do.
+    summary
+        The table of results.
+    ended
+        Why the work ended before all was done, as a sentence; empty where it did not, or was
+        stopped.
+    """
+
+    done: int
+    unchanged: int
+    failed: int
+    total: int
+    summary: Path
+    ended: str = ""
+
+    @property
+    def is_interrupted(self) -> bool:
+        """Whether something is left to do."""
+        return self.done + self.unchanged + self.failed < self.total
+
+
+def plan(
+    manifest: Manifest,
+    source: Session,
+    folder: Path,
+    *,
+    suffix: str | None = None,
+    inputs: Iterable[Path] = (),
+) -> tuple[Task, ...]:
+    """Return what is to be done for each subject; nothing is written yet.
+
+    Parameters
+    ----------
+    manifest
+        The subjects; what a row leaves open is taken from the source.
+    source
+        With its mesh read, landmarks, penalty and so on. Where its landmarks lie on another
+        destination does not matter.
+    folder
+        Where the outputs go.
+    suffix
+        The format of the warped meshes; without it, the source's.
+    inputs
+        Further files that must not be overwritten.
+
+    Raises
+    ------
+    PinwarpError
+        When the source has no mesh or no landmark for pairs, the format is not known, or an
+        output would replace an input.
+
+    Examples
+    --------
+    >>> from pinwarp.io.manifest import Subject
+    >>> from pinwarp.io.samples import sample_session
+    >>> from pinwarp.session.keeping.files import read_session
+    >>> anna = Subject("anna", 2, Path("/study/anna.csv"), penalty=0.5)
+    >>> (task,) = plan(
+    ...     Manifest(Path("/study/manifest.csv"), (anna,)),
+    ...     read_session(sample_session()),
+    ...     Path("/study/warped"),
+    ... )
+    >>> task.mesh.name, task.session.warping_penalty
+    ('anna_warped.ply', 0.5)
+    """
+    record = to_record(source)
+    if source.source is None or record.source_mesh is None:
+        raise PinwarpError("There is no source mesh to warp: name one.")
+    landmarks = places_of(source.landmarks)
+    if not any(x.role is Role.PAIR and x.enabled for x in landmarks):
+        raise PinwarpError("The source has no landmark to be paired with the subjects'.")
+    suffix = suffix or source.source.path.suffix.lower()
+    if suffix not in MESH_SUFFIXES:
+        known = ", ".join(MESH_SUFFIXES)
+        raise PinwarpError(f"Meshes of the type {suffix!r} are not supported: choose of {known}.")
+    has_passengers = any(x.role is Role.PASSENGER for x in landmarks)
+    # Small enough to be sent to a worker, which reads the mesh itself.
+    shared = replace(source, source=record.source_mesh, destination=None, landmarks=landmarks)
+    tasks = tuple(
+        Task(
+            subject=subject,
+            manifest=manifest.path,
+            session=replace(
+                shared,
+                warping_penalty=(
+                    shared.warping_penalty if subject.penalty is None else subject.penalty
+                ),
+                components=subject.components or shared.components,
+            ),
+            mesh=folder / f"{subject.name}_warped{suffix}",
+            passengers=(
+                folder / f"{subject.name}_passengers.landmarks.csv" if has_passengers else None
+            ),
+        )
+        for subject in manifest.subjects
+    )
+    read = [manifest.path, source.source.path, *inputs]
+    for task in tasks:
+        read += [task.subject.destination_landmarks]
+        read += [] if task.subject.destination_mesh is None else [task.subject.destination_mesh]
+    refuse_to_replace(read, [folder / SUMMARY, *(path for task in tasks for path in task.outputs)])
+    return tasks
+
+
+def refuse_to_replace(inputs: Iterable[Path], outputs: Iterable[Path]) -> None:
+    """Raise when an output is one of the inputs.
+
+    Raises
+    ------
+    PinwarpError
+        With the file's name and the way out.
+
+    Examples
+    --------
+    >>> refuse_to_replace([Path("femur.ply")], [Path("warped/femur.ply")])
+    """
+    real = {os.path.realpath(path) for path in inputs}
+    for path in outputs:
+        if os.path.realpath(path) in real:
+            raise PinwarpError(
+                f"{path} would be replaced, but it is read: choose another folder for the output."
+            )
+
+
+def run(
+    tasks: Sequence[Task],
+    folder: Path,
+    runner: Runner,
+    *,
+    force: bool = False,
+    told: Callable[[Task, str, str], None] = lambda _task, _status, _words: None,
+) -> Tally:
+    """Do what is to be done and keep the table of results up to date.
+
+    A task is passed over where its row in the table says that it was made from the same inputs
+    and options, and its outputs are there. Where the runner is stopped or its cluster is gone,
+    what was done stays.
+
+    Parameters
+    ----------
+    tasks
+        From :func:`plan`.
+    folder
+        Where the table goes; it is made where it is missing.
+    runner
+        Where the work is done; see :mod:`pinwarp.session.study.workers`.
+    force
+        Do everything again.
+    told
+        Called after each task with "done", "unchanged" or "failed", and the reason.
+
+    Returns
+    -------
+    Tally
+
+    Raises
+    ------
+    OSError
+        When the table cannot be written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    summary = _Summary(folder / SUMMARY, tasks)
+    # Whether it can be written is better known before a night of work than after it.
+    summary.save()
+    waiting = [task for task in tasks if force or not summary.is_unchanged(task)]
+    rest = {task.subject.name for task in waiting}
+    for task in tasks:
+        if task.subject.name not in rest:
+            told(task, "unchanged", "")
+    count = {DONE: 0, FAILED: 0}
+    ended = ""
+    try:
+        with closing(runner(warp_subject, waiting)) as results:
+            for task, result in results:
+                row = _row(task, result)
+                summary.take(row)
+                count[row["status"]] += 1
+                told(task, row["status"], row.get("error", ""))
+    except WorkEnded as error:
+        ended = str(error)
+    finally:
+        summary.save()
+    return Tally(
+        done=count[DONE],
+        unchanged=len(tasks) - len(waiting),
+        failed=count[FAILED],
+        total=len(tasks),
+        summary=summary.path,
+        ended=ended,
+    )
+
+
+class _Summary:
+    """The table of results, with what an earlier run left in it."""
+
+    def __init__(self, path: Path, tasks: Sequence[Task]) -> None:
+        self.path = path
+        earlier = read_summary(path)
+        self._order = [task.subject.name for task in tasks]
+        # What was done for another manifest into this folder stays behind the subjects of this.
+        self._order += [
+            name
+            for name, row in earlier.items()
+            if name not in set(self._order) and row.get("status") == DONE
+        ]
+        self._rows = {name: earlier[name] for name in self._order if name in earlier}
+        self._saved = time.monotonic()
+
+    def is_unchanged(self, task: Task) -> bool:
+        """Whether the task's outputs are there, made from what they would be made from now."""
+        row = self._rows.get(task.subject.name, {})
+        if row.get("status") != DONE or not all(path.is_file() for path in task.outputs):
+            return False
+        try:
+            return row.get("made_from") == made_from(task)
+        except (FileFormatError, OSError):
+            return False
+
+    def take(self, row: SummaryRow) -> None:
+        self._rows[row["name"]] = row
+        if time.monotonic() - self._saved > SECONDS_BETWEEN_SAVES:
+            self.save()
+
+    def save(self) -> None:
+        write_summary(self.path, (self._rows[x] for x in self._order if x in self._rows))
+        self._saved = time.monotonic()
+
+
+def _row(task: Task, result: Outcome | Exception) -> SummaryRow:
+    """Return a row of the table."""
+    name = task.subject.name
+    if isinstance(result, Exception):
+        return {"name": name, "status": FAILED, "error": words_of(result) or repr(result)}
+    row = {"name": name, "seconds": f"{result.seconds:.3f}", "made_from": result.made_from}
+    checked = result.check
+    if checked is None:
+        return row | {"status": FAILED, "error": result.error}
+    distance = checked.distance
+    figures = {
+        "pairs": len(checked.pairs),
+        "penalty": task.session.warping_penalty,
+        "rms_residual": checked.rms_residual,
+        "rms_leave_one_out": checked.rms_leave_one_out,
+        "suggested_penalty": checked.suggested_penalty,
+        "flexibility": checked.flexibility,
+        "folded_vertices": checked.folded_vertices,
+        "distance_mean": None if distance is None else distance.mean,
+        "distance_95": None if distance is None else distance.percentile_95,
+        "distance_max": None if distance is None else distance.maximum,
+    }
+    return (
+        row
+        | {"status": DONE}
+        | {key: f"{value:.6g}" for key, value in figures.items() if value is not None}
+        | {
+            "findings": " ".join(named.sentence for named in checked.findings),
+            "notes": " ".join((*result.notes, *checked.notes)),
+        }
+    )

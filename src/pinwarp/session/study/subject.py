@@ -1,0 +1,261 @@
+"""One subject of a batch, from its files to its files: a pure function of a task."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from pinwarp.core.errors import FileFormatError, PinwarpError, words_of
+from pinwarp.core.landmarks import Landmark, Role, Side
+from pinwarp.io.landmark_files import LandmarkReading, read_landmarks, write_landmarks
+from pinwarp.io.manifest import Subject
+from pinwarp.io.meshes import MeshFile, read_mesh, write_mesh
+from pinwarp.io.reading import hash_of
+from pinwarp.io.session_file import MeshReference
+from pinwarp.session.importing.conversion import frame_notes
+from pinwarp.session.judging.check import Check, check
+from pinwarp.session.outputs.exports import warped_mesh, warped_passengers
+from pinwarp.session.session import Session, as_seen
+from pinwarp.version import __version__
+
+# So many names are told, the others counted.
+NAMED = 3
+
+
+@dataclass(frozen=True)
+class Task:
+    """All that is needed to warp the source to one subject; small, to be sent to a worker.
+
+    Parameters
+    ----------
+    subject
+        The row of the manifest.
+    manifest
+        Where that row is, for messages.
+    session
+        The source as a reference, its landmarks without destinations, and how it is warped.
+    mesh
+        Where the warped mesh goes.
+    passengers
+        Where the warped passengers go; None where there are none.
+    """
+
+    subject: Subject
+    manifest: Path
+    session: Session
+    mesh: Path
+    passengers: Path | None
+
+    @property
+    def outputs(self) -> tuple[Path, ...]:
+        """All files that are written."""
+        return (self.mesh,) if self.passengers is None else (self.mesh, self.passengers)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of a task.
+
+    Attributes
+    ----------
+    made_from
+        The hash of everything it was made from; see :func:`made_from`.
+    seconds
+        How long it took.
+    check
+        The figures; None where it failed.
+    notes
+        What was left out, as sentences.
+    error
+        Why it failed, as a sentence; empty where it did not.
+    """
+
+    made_from: str
+    seconds: float
+    check: Check | None = None
+    notes: tuple[str, ...] = ()
+    error: str = ""
+
+
+def warp_subject(task: Task) -> Outcome:
+    """Warp the source to one subject and write the mesh and the passengers.
+
+    Parameters
+    ----------
+    task
+        What to do. The files it names are read and written here.
+
+    Returns
+    -------
+    Outcome
+        Whatever goes wrong is told in it, never raised: the other subjects go on.
+    """
+    start = time.perf_counter()
+    try:
+        hashed = made_from(task)
+        checked, notes = _warp(task)
+        return Outcome(hashed, time.perf_counter() - start, checked, notes)
+    except (PinwarpError, OSError) as error:
+        words = words_of(error)
+    except MemoryError:
+        words = "There is too little memory for it. Run fewer at once."
+    except Exception as error:  # a fault of ours in one subject must not end the night's batch
+        words = f"Unexpectedly, {type(error).__name__}: {error}"
+    return Outcome("", time.perf_counter() - start, error=words)
+
+
+def _warp(task: Task) -> tuple[Check, tuple[str, ...]]:
+    subject = task.subject
+    reading = read_landmarks(subject.destination_landmarks, Side.DESTINATION)
+    session, notes = with_destinations(task.session, reading, subject.destination_landmarks)
+    if isinstance(task.session.source, MeshReference):
+        session = session.with_mesh(Side.SOURCE, _source(task.session.source))
+    if subject.destination_mesh is not None:
+        session = session.with_mesh(Side.DESTINATION, read_mesh(subject.destination_mesh))
+    checked = check(session)
+    write_mesh(task.mesh, warped_mesh(session))
+    if task.passengers is not None:
+        write_landmarks(task.passengers, warped_passengers(session), Side.DESTINATION)
+    return checked, notes
+
+
+# All subjects of a process have the same source: it is read once.
+@functools.lru_cache(maxsize=1)
+def _source(reference: MeshReference) -> MeshFile:
+    file = read_mesh(reference.path)
+    if file.sha256 != reference.sha256:
+        raise FileFormatError(file.path, "The source mesh changed meanwhile. Run the batch again.")
+    return as_seen(file, reference)
+
+
+def with_destinations(
+    session: Session, reading: LandmarkReading, path: Path
+) -> tuple[Session, tuple[str, ...]]:
+    """Place the source's landmarks on a subject, by name.
+
+    Parameters
+    ----------
+    session
+        The source; what its landmarks have as destinations is forgotten.
+    reading
+        The subject's landmarks.
+    path
+        The file they are from, for messages.
+
+    Returns
+    -------
+    session, notes
+        What has no counterpart is told in the notes.
+
+    Raises
+    ------
+    FileFormatError
+        When not a single name is known.
+
+    Examples
+    --------
+    >>> source = Session(landmarks=(Landmark("apex", (0, 0, 0)), Landmark("tip", (1, 0, 0))))
+    >>> reading = LandmarkReading((Landmark("tip", destination=(2, 0, 0)),), False, ())
+    >>> session, notes = with_destinations(source, reading, Path("anna.csv"))
+    >>> [pair.name for pair in session.pairs], notes
+    (['tip'], ('1 landmark is not in anna.csv: apex.',))
+    """
+    placed = {x.name: x.destination for x in reading.landmarks if x.destination is not None}
+    landmarks, missing = [], []
+    for landmark in session.landmarks:
+        is_passenger = landmark.role is Role.PASSENGER
+        position = None if is_passenger else placed.pop(landmark.name, None)
+        landmarks.append(replace(landmark, destination=position))
+        if position is None and landmark.enabled and not is_passenger:
+            missing.append(landmark.name)
+        elif is_passenger:
+            placed.pop(landmark.name, None)
+    session = replace(session, landmarks=tuple(landmarks))
+    if not session.pairs:
+        raise FileFormatError(
+            path,
+            "None of its names is that of a landmark on the source. "
+            f"It has {_some(list(reading.names))}; the source has {_some(missing)}.",
+        )
+    notes = [*reading.notes, *frame_notes(reading, session.unit)]
+    if missing:
+        notes.append(f"{_landmarks(missing)} not in {path.name}: {_some(missing)}.")
+    if placed:
+        unknown = list(placed)
+        notes.append(f"{_landmarks(unknown)} not on the source: {_some(unknown)}.")
+    notes += [f"{path.name}, line {x.line} was skipped: {x.reason}." for x in reading.skipped]
+    return session, tuple(notes)
+
+
+def _landmarks(names: Sequence[str]) -> str:
+    return "1 landmark is" if len(names) == 1 else f"{len(names)} landmarks are"
+
+
+def _some(names: Sequence[str]) -> str:
+    told = ", ".join(names[:NAMED])
+    return f"{told} and {len(names) - NAMED} more" if len(names) > NAMED else told
+
+
+def made_from(task: Task) -> str:
+    """Return a hash of all that the outputs depend on: files by their content, and options.
+
+    Parameters
+    ----------
+    task
+        What is done.
+
+    Returns
+    -------
+    str
+        The same wherever the files are.
+
+    Raises
+    ------
+    FileFormatError
+        When the row cannot be used or a file is missing; the message names the line of the
+        manifest.
+    """
+    subject, session = task.subject, task.session
+    if subject.problem:
+        raise FileFormatError(task.manifest, subject.problem, subject.line)
+    source = session.source
+    parts = (
+        __version__,
+        None if source is None else (source.sha256, source.mirrored, source.scaled),
+        tuple((x.name, x.source, x.role.value, x.enabled) for x in session.landmarks),
+        session.warping_penalty,
+        session.convention.value,
+        session.planar,
+        session.components.value,
+        session.blend,
+        session.unit,
+        _content(task, subject.destination_landmarks),
+        _content(task, subject.destination_mesh),
+        task.mesh.suffix,
+    )
+    return f"sha256:{hashlib.sha256(repr(parts).encode()).hexdigest()[:32]}"
+
+
+def _content(task: Task, path: Path | None) -> str:
+    if path is None:
+        return ""
+    found = hash_of(path)
+    if found is None:
+        words = "cannot be read." if path.exists() else "is not there. Was it moved or renamed?"
+        raise FileFormatError(task.manifest, f"The file {path} {words}", task.subject.line)
+    return found
+
+
+def places_of(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
+    """Return landmarks as a batch begins with them: on the source only.
+
+    Examples
+    --------
+    >>> places_of([Landmark("apex", (1, 2, 3), (4, 5, 6)), Landmark("tip")])[0].is_complete
+    False
+    """
+    return tuple(replace(x, destination=None) for x in landmarks if x.source is not None)

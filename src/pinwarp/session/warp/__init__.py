@@ -1,0 +1,1 @@
+"""The warp of a session, and what it predicts."""
