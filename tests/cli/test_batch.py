@@ -274,6 +274,14 @@ def test_landmarks_without_a_counterpart_are_told_in_the_summary(run, study, out
     assert "line 10 was skipped" in row["notes"]
 
 
+def test_a_passenger_in_the_subjects_own_file_is_no_unknown_landmark(run, study, out):
+    path = study / "s0.csv"
+    path.write_text(path.read_text().rstrip("\n") + "\nmuscle,1,2,3\n")
+    run()
+    row = rows_of(out)["s0"]
+    assert (row["pairs"], row["notes"]) == ("8", "")
+
+
 def test_a_subject_without_any_known_name_fails_with_both_lists(run, study, out):
     (study / "s0.csv").write_text("name,x,y,z\na,1,2,3\nb,4,5,6\n")
     run(exit_code=1)
