@@ -92,12 +92,24 @@ def test_what_is_wrong_is_told_with_its_line(tmp_path, text, line, words):
     [
         ("", "anna", "There is no destination_landmarks."),
         ("", "anna,a.csv,surplus", "The row has 3 cells for 2 columns."),
-        (",penalty", "anna,a.csv,-1", "Penalty: the warping penalty -1 is negative."),
-        (",penalty", "anna,a.csv,much", "Penalty: 'much' is not a number."),
-        (",penalty", "anna,a.csv,nan", "Penalty: 'nan' is not a finite number."),
-        (",penalty", f"anna,a.csv,{'9' * 1000}", f"Penalty: '{'9' * 57}...' is not a finite"),
-        (",components", "anna,a.csv,elastic", "the components 'elastic' are none of full"),
-        ("", "anna,~nosuchuser/x.csv", "Destination_landmarks: there is no user '~nosuchuser'."),
+        (
+            ",penalty",
+            "anna,a.csv,-1",
+            "In the column 'penalty': the warping penalty -1 is negative.",
+        ),
+        (",penalty", "anna,a.csv,much", "In the column 'penalty': 'much' is not a number."),
+        (",penalty", "anna,a.csv,nan", "In the column 'penalty': 'nan' is not a finite number."),
+        (",penalty", f"anna,a.csv,{'9' * 1000}", f"'{'9' * 57}...' is not a finite"),
+        (
+            ",components",
+            "anna,a.csv,elastic",
+            "In the column 'components': 'elastic' is none of full",
+        ),
+        (
+            "",
+            "anna,~nosuchuser/x.csv",
+            "In the column 'destination_landmarks': there is no user '~nosuchuser'.",
+        ),
         (",destination_mesh", "anna,a.csv,~nosuchuser/x.stl", "no user '~nosuchuser'"),
     ],
 )
@@ -116,6 +128,10 @@ def test_a_row_that_cannot_be_used_names_its_column_and_the_others_go_on(
 def test_two_names_that_look_the_same_are_refused(tmp_path, one, other):
     error = problem(tmp_path, f"{HEADER}\n{one},a.csv\n{other},b.csv\n")
     assert "was used in line 2 in letters that look the same" in error.reason
+
+
+def test_a_name_is_taken_also_where_its_row_cannot_be_used(tmp_path):
+    assert "was used in line 2" in problem(tmp_path, f"{HEADER}\nanna\nanna,a.csv\n").reason
 
 
 def test_a_manifest_without_subjects_says_so(tmp_path):

@@ -252,6 +252,17 @@ def test_commits_with_one_merge_key_become_one_step():
     assert editor.session == Session()
 
 
+def test_a_commit_after_an_undo_is_a_step_of_its_own_even_with_the_same_merge_key():
+    editor = Editor()
+    editor.commit(edits.set_penalty(editor.session, 1.0), "Change penalty", "penalty")
+    editor.commit(edits.set_unit(editor.session, "m"), "Change unit")
+    editor.undo()
+    editor.commit(edits.set_penalty(editor.session, 2.0), "Change penalty", "penalty")
+    assert editor.redo_label is None
+    editor.undo()
+    assert editor.session == edits.set_penalty(Session(), 1.0)
+
+
 def test_a_landmark_that_is_gone_is_no_longer_selected():
     editor = Editor(Session(landmarks=(pair("a"), pair("b"))))
     editor.select("a", "b")
@@ -293,6 +304,18 @@ def test_nothing_is_computed_twice():
     assert solver.factorisations == 1
     solver.solve(WarpInputs.of(edits.move(renamed, "p1", SOURCE, (0, 0, 0))))
     assert solver.factorisations == 2
+
+
+def test_a_residual_that_is_only_rounding_is_none():
+    rng = np.random.default_rng(0)
+    places = 100 + 50 * rng.normal(size=(20, 2, 3))
+    pairs = tuple(Landmark(f"p{i}", tuple(a), tuple(b)) for i, (a, b) in enumerate(places))
+    result = WarpSolver().solve(WarpInputs.of(Session(landmarks=pairs)))
+    missed = np.linalg.norm(result.landmarks - places[:, 1], axis=1)
+    assert 0 < missed.max() < 1e-9
+    assert not result.residuals.any()
+    stiff = WarpSolver().solve(WarpInputs.of(Session(landmarks=pairs, warping_penalty=1e-3)))
+    assert stiff.residuals.all()
 
 
 def test_a_session_without_pairs_has_no_warp_and_says_what_to_do():

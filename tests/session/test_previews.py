@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from pinwarp.core.components import Components
 from pinwarp.core.factor import factorise
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.core.mesh import Mesh
@@ -71,6 +73,25 @@ def test_a_preview_of_moving_shows_the_warp_as_it_will_be_at_rest(session, motio
     )
     at_rest = solver.solve(WarpInputs.of(after))
     assert np.abs(at_rest.vertices - preview.vertices).max() < 1e-4
+
+
+IN_PART = {
+    "the components": {"components": Components.AFFINE},
+    "the blend": {"blend": 0.5},
+    "both": {"components": Components.WITHOUT_POSE, "blend": 0.3},
+}
+
+
+@pytest.mark.parametrize("motion", ["the penalty", "a destination"])
+@pytest.mark.parametrize("part", IN_PART)
+@pytest.mark.parametrize("began_whole", [False, True])
+def test_a_preview_of_a_warp_in_part_shows_that_part(session, motion, part, began_whole):
+    part_of = replace(session, **IN_PART[part])
+    solver = WarpSolver()
+    solver.solve(WarpInputs.of(session if began_whole else part_of))
+    after = WarpInputs.of(MOTIONS[motion](part_of))
+    preview = solver.preview(after)
+    assert np.abs(preview.vertices - WarpSolver().solve(after).vertices).max() < 1e-4
 
 
 def test_sliding_evaluates_nothing_anew(session):

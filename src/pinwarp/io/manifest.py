@@ -191,7 +191,7 @@ def _value(column: str, text: str, separator: str, folder: Path) -> Any:
             case _:
                 return _path(text, folder)
     except ValueError as error:
-        raise ValueError(f"{column}: {error}") from None
+        raise ValueError(f"in the column {column!r}: {error}") from None
 
 
 def checked_name(name: str) -> str:
@@ -236,4 +236,4 @@ def _components(text: str) -> Components:
         return Components(text.lower().replace("_", " ").replace("-", " "))
     except ValueError:
         known = ", ".join(part.value for part in Components)
-        raise ValueError(f"the components {shortened(text)} are none of {known}") from None
+        raise ValueError(f"{shortened(text)} is none of {known}") from None

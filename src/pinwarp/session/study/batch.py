@@ -16,7 +16,7 @@ from pinwarp.io.meshes import MESH_SUFFIXES
 from pinwarp.io.summary_file import SummaryRow, read_summary, write_summary
 from pinwarp.session.session import Session, to_record
 from pinwarp.session.study.subject import Outcome, Task, made_from, places_of, warp_subject
-from pinwarp.session.study.workers import Runner
+from pinwarp.session.study.workers import Runner, WorkEnded
 
 SUMMARY = "summary.csv"
 DONE, FAILED = "done", "failed"
@@ -33,9 +33,12 @@ class Tally:
     done, unchanged, failed
         Numbers of subjects.
     total
-        All of them; more than the sum of the others where the batch was interrupted.
+        All of them; more than the sum of the others where something is left to do.
     summary
         The table of results.
+    ended
+        Why the work ended before all was done, as a sentence; empty where it did not, or was
+        stopped.
     """
 
     done: int
@@ -43,6 +46,7 @@ class Tally:
     failed: int
     total: int
     summary: Path
+    ended: str = ""
 
     @property
     def is_interrupted(self) -> bool:
@@ -164,7 +168,8 @@ def run(
     """Do what is to be done and keep the table of results up to date.
 
     A task is passed over where its row in the table says that it was made from the same inputs
-    and options, and its outputs are there. Where the runner is stopped, what was done stays.
+    and options, and its outputs are there. Where the runner is stopped or its cluster is gone,
+    what was done stays.
 
     Parameters
     ----------
@@ -198,6 +203,7 @@ def run(
         if task.subject.name not in rest:
             told(task, "unchanged", "")
     count = {DONE: 0, FAILED: 0}
+    ended = ""
     try:
         with closing(runner(warp_subject, waiting)) as results:
             for task, result in results:
@@ -205,6 +211,8 @@ def run(
                 summary.take(row)
                 count[row["status"]] += 1
                 told(task, row["status"], row.get("error", ""))
+    except WorkEnded as error:
+        ended = str(error)
     finally:
         summary.save()
     return Tally(
@@ -213,6 +221,7 @@ def run(
         failed=count[FAILED],
         total=len(tasks),
         summary=summary.path,
+        ended=ended,
     )
 
 
