@@ -14,6 +14,7 @@ from qtpy.QtGui import QColor
 from pinwarp.core.components import Components, as_drawn
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
+from pinwarp.core.live import drawable
 from pinwarp.gui import theme
 from pinwarp.gui.canvas import Canvas
 from pinwarp.gui.offscreen import Offscreen, Pixels
@@ -102,7 +103,7 @@ def ends_of(session: Session) -> Ends:
         )
     warp, part = solved(session), as_drawn(session.components)
     aligned, warped = (
-        warp.applied(part, blend).evaluate(mesh.vertices).astype(np.float32) for blend in (0, 1)
+        drawable(warp.applied(part, blend).evaluate(mesh.vertices)) for blend in (0, 1)
     )
     return Ends(aligned, warped)
 

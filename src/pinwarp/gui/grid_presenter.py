@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from qtpy.QtCore import QObject
 from qtpy.QtGui import QAction, QActionGroup
 
+from pinwarp.core.errors import RangeError
 from pinwarp.core.landmarks import Side
 from pinwarp.core.lattice import box_lattice, plane_lattice
 from pinwarp.core.live import PreviewPoints, preview
@@ -142,7 +143,7 @@ class GridPresenter(QObject):
             self._asked = request
             self._warps.request(request)
 
-    def _on_warped(self, warped: tuple[_Request, NDArray[np.float32]]) -> None:
+    def _on_warped(self, warped: tuple[_Request, NDArray[np.float32] | None]) -> None:
         request, lines = warped
         # One that is late still shows the way while something moves, unless the grid is another.
         if self._asked is not None and request.grid is self._grid:
@@ -152,7 +153,10 @@ class GridPresenter(QObject):
         raise error
 
 
-def _warped(request: _Request) -> tuple[_Request, NDArray[np.float32]]:
-    """Warp the places of a grid; runs in the worker."""
-    places = preview(request.spline, request.grid.points)
+def _warped(request: _Request) -> tuple[_Request, NDArray[np.float32] | None]:
+    """Warp the places of a grid, None where that cannot be drawn; runs in the worker."""
+    try:
+        places = preview(request.spline, request.grid.points)
+    except RangeError:
+        return request, None
     return request, places.reshape(request.grid.lines.shape)
