@@ -6,9 +6,9 @@ import numpy as np
 from tests.session.study import bone
 
 from pinwarp.core.landmarks import Side
-from pinwarp.gui.grid_presenter import GridKind
 from pinwarp.io.meshes import write_mesh
 from pinwarp.session import edits
+from pinwarp.session.editor import GridKind
 from pinwarp.session.maps import MapKind
 
 
@@ -29,7 +29,7 @@ def test_a_landmark_beyond_all_numbers_is_said_and_undone(user):
             user.settle()
             if far > 1e37:
                 assert "range of numbers" in window.presenter.result.problem
-                assert "range of numbers" in window.penalty.notes.text()
+                assert "range of numbers" in window.panel.warning.text()
             editor.undo()
             user.settle()
     assert np.array_equal(window.presenter.result.vertices, before)
