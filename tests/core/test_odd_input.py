@@ -211,7 +211,7 @@ ODD_PENALTIES = [
 ]
 
 
-@pytest.mark.parametrize("penalty", ODD_PENALTIES, ids=repr)
+@pytest.mark.parametrize("penalty", ODD_PENALTIES, ids=range(len(ODD_PENALTIES)))
 @pytest.mark.parametrize("convention", list(PenaltyConvention))
 def test_odd_penalties_are_refused_in_words(penalty, convention):
     with pytest.raises(PenaltyError, match="penalty"):

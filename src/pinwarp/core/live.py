@@ -57,15 +57,24 @@ class PreviewPoints:
         """Centre the vertices and round them; RangeError where that leaves nothing to draw."""
         array = np.asarray(vertices, dtype=np.float64)
         centre = 0.5 * array.min(axis=0) + 0.5 * array.max(axis=0)
-        reach = float(np.abs(array - centre).max())
-        if reach > LARGEST_SINGLE or 0 < reach < SMALLEST_SINGLE:
-            raise RangeError(
-                f"The source mesh reaches {reach:.3g} from its middle, which cannot be drawn: "
-                "check its unit."
-            )
+        reach = check_drawable(array - centre)
         local = np.empty(array.shape, np.float32)
         np.subtract(array, centre, out=local, casting="same_kind")
         return cls(centre, local, reach)
+
+
+def check_drawable(vertices: Matrix) -> float:
+    """Return the largest coordinate; RangeError where single precision, which is drawn, has none.
+
+    Examples
+    --------
+    >>> check_drawable(np.array([[0.0, -3.0, 2.0]]))
+    3.0
+    """
+    reach = float(max(-vertices.min(), vertices.max()))
+    if reach > LARGEST_SINGLE or 0 < reach < SMALLEST_SINGLE:
+        raise RangeError(f"A mesh of the size {reach:.3g} cannot be drawn: check its unit.")
+    return reach
 
 
 @quiet

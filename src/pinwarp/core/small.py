@@ -2,6 +2,7 @@
 
 A script that warps point after point, as OPynSim's do, spends its time on numpy being called;
 one that warps a single one would only wait for the compiled code to be loaded, half a second.
+The two agree to rounding, not to the last bit.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 from pinwarp.core import kernel
 from pinwarp.core.factor import PLANAR_TOLERANCE
 from pinwarp.core.findings import Finding, FindingKind
+from pinwarp.core.positions import as_positions
 from pinwarp.core.spline import PenaltyConvention, Spline
 
 Matrix = NDArray[np.float64]
@@ -85,6 +87,11 @@ def solve_ordinary(
         None where it is for the long way (:func:`~pinwarp.core.factor.factorise` and
         :func:`~pinwarp.core.spline.solve`) to warn, to refuse, or to be faster.
 
+    Raises
+    ------
+    LandmarkError
+        When the positions are no table of numbers.
+
     Examples
     --------
     >>> warm_up()
@@ -96,7 +103,11 @@ def solve_ordinary(
     >>> solve_ordinary(source, 2 * source[:5], 0.0, regularising) is None
     True
     """
-    if not (_is_plain(source) and _is_plain(destination) and source.shape == destination.shape):
+    if not _is_plain(source):
+        source = as_positions(source, "source landmark")
+    if not _is_plain(destination):
+        destination = as_positions(destination, "destination landmark")
+    if source.shape != destination.shape:
         return None
     if not LEAST_PAIRS <= len(source) <= MOST_PAIRS or penalty == np.inf:
         return None

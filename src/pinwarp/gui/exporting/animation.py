@@ -13,6 +13,7 @@ from qtpy.QtGui import QColor
 from pinwarp.core.components import Components, as_drawn
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
+from pinwarp.core.live import drawable
 from pinwarp.gui.drawn.surface import shading_normals, triangles
 from pinwarp.gui.exporting.offscreen import Offscreen, Pixels
 from pinwarp.gui.scene.drawables import FoldedSurface, GridLines, Overlay
@@ -102,7 +103,7 @@ def ends_of(session: Session) -> Ends:
         )
     warp, part = solved(session), as_drawn(session.components)
     aligned, warped = (
-        warp.applied(part, blend).evaluate(mesh.vertices).astype(np.float32) for blend in (0, 1)
+        drawable(warp.applied(part, blend).evaluate(mesh.vertices)) for blend in (0, 1)
     )
     return Ends(aligned, warped)
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
+from pinwarp.core.live import check_drawable
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.names import look_alike_notes
 from pinwarp.gui.drawn.surface import Surface
@@ -56,9 +57,13 @@ class SessionMeshes:
         self._located: list[Path] = []
 
     def read(self, path: Path, progress: Progress) -> MeshFile:
-        """Read a mesh and make it ready to be drawn; to be run in a job."""
+        """Read a mesh and make it ready to be drawn; to be run in a job.
+
+        RangeError where it is too large or too small to be drawn.
+        """
         file = read_mesh(path, progress=lambda share, stage: progress(0.7 * share, stage))
         progress(0.75, "preparing to draw")
+        check_drawable(file.mesh.vertices)
         self._keep_surface(file.mesh, Surface(file.mesh))
         progress(1.0, "done")
         return file

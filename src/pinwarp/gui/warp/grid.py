@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from qtpy.QtCore import QObject
 
+from pinwarp.core.errors import RangeError
 from pinwarp.core.landmarks import Side
 from pinwarp.core.lattice import box_lattice, plane_lattice
 from pinwarp.core.live import PreviewPoints, preview
@@ -156,7 +157,7 @@ class GridPresenter(Capability):
             self._asked = request
             self._worker.request(request)
 
-    def _on_warped(self, warped: tuple[_Request, NDArray[np.float32]]) -> None:
+    def _on_warped(self, warped: tuple[_Request, NDArray[np.float32] | None]) -> None:
         request, lines = warped
         # One that is late still shows the way while something moves, unless the grid is another.
         if self._asked is not None and request.grid is self._grid:
@@ -176,7 +177,10 @@ class GridPresenter(Capability):
         raise error
 
 
-def _warped(request: _Request) -> tuple[_Request, NDArray[np.float32]]:
-    """Warp the places of a grid; runs in the worker."""
-    places = preview(request.spline, request.grid.points)
+def _warped(request: _Request) -> tuple[_Request, NDArray[np.float32] | None]:
+    """Warp the places of a grid, None where that cannot be drawn; runs in the worker."""
+    try:
+        places = preview(request.spline, request.grid.points)
+    except RangeError:
+        return request, None
     return request, places.reshape(request.grid.lines.shape)

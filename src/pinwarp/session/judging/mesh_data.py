@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinwarp.core.components import Components, as_drawn
+from pinwarp.core.errors import RangeError
 from pinwarp.core.jacobian import determinants, jacobians, stretches
 from pinwarp.core.landmarks import Side
+from pinwarp.core.live import LARGEST_SINGLE
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.normals import vertex_normals
 from pinwarp.core.prediction import Prediction, prediction_of
@@ -109,6 +111,9 @@ def warped_mesh_data(
             source.vertices,
             lambda share: progress(0.7 + 0.3 * share, "estimating deviations"),
         )[:, 0]
+    for name, values in found.items():
+        if not float(np.abs(values).max()) <= LARGEST_SINGLE:
+            raise RangeError(f"The figures {name} leave the range of numbers that files hold.")
     return VertexData(normals, found)
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pinwarp.core.errors import RangeError
 from pinwarp.core.landmarks import Landmark, Position, Side, as_position
 from pinwarp.core.prediction import inverse_warp, prediction_of
 from pinwarp.core.spline import PenaltyConvention
@@ -53,6 +54,13 @@ def ghost_of(landmark: Landmark | None, side: Side, result: WarpResult) -> Ghost
     Ghost or None
         None where there is nothing to predict from, or the warp cannot be inverted there.
     """
+    try:
+        return _predicted(landmark, side, result)
+    except RangeError:
+        return None
+
+
+def _predicted(landmark: Landmark | None, side: Side, result: WarpResult) -> Ghost | None:
     factor, spline = result.factor, result.spline
     if landmark is None or landmark.position(side) is not None or factor is None or spline is None:
         return None
