@@ -17,7 +17,7 @@ from tests.gui.test_warp_panel import (
 from pinwarp.core.components import applied
 from pinwarp.core.landmarks import positions
 from pinwarp.gui.scene.camera_pose import Pose
-from pinwarp.session.editor import GridKind
+from pinwarp.session.view import GridKind
 
 
 def grid(user, side):

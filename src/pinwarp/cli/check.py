@@ -14,8 +14,8 @@ from rich.table import Table
 from pinwarp.cli.options import SessionFile
 from pinwarp.session.judging import check as checking
 from pinwarp.session.keeping.files import read_session
-from pinwarp.session.outputs.exports import applied_in_words
 from pinwarp.session.session import Session
+from pinwarp.session.warp.component_words import applied_in_words
 from pinwarp.version import __version__
 
 FLAGGED = 1

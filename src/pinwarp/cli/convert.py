@@ -13,7 +13,7 @@ from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES, format_of
 from pinwarp.session.importing.conversion import convert_landmarks
-from pinwarp.session.study.batch import refuse_to_replace
+from pinwarp.session.outputs.replacing import refuse_to_replace
 
 
 def convert(

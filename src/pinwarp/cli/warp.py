@@ -12,8 +12,8 @@ from pinwarp.cli.telling import BAD_USAGE, progress_bar, tell_error, tell_notes
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.session.keeping.files import read_session, with_meshes
-from pinwarp.session.outputs.exports import applied_in_words
 from pinwarp.session.outputs.warp_files import FileWarper, outputs_of, warp_each
+from pinwarp.session.warp.component_words import applied_in_words
 
 
 def warp(

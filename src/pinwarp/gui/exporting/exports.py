@@ -16,7 +16,6 @@ from pinwarp.io.meshes import NORMALS_SUFFIXES, SCALARS_SUFFIXES, write_mesh
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.mesh_data import warped_mesh_data
 from pinwarp.session.outputs.exports import (
-    applied_in_words,
     session_coefficients,
     warped_landmarks,
     warped_mesh,
@@ -24,6 +23,7 @@ from pinwarp.session.outputs.exports import (
 )
 from pinwarp.session.outputs.script import script_of
 from pinwarp.session.session import Session
+from pinwarp.session.warp.component_words import applied_in_words
 
 
 class Exports:

@@ -11,8 +11,8 @@ from pinwarp.gui.tasks.jobs import Cancelled
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
 from pinwarp.io.meshes import MESH_SUFFIXES
 from pinwarp.session.editor import Editor
-from pinwarp.session.outputs.exports import applied_in_words
 from pinwarp.session.outputs.warp_files import FileWarper, WarpedFile, outputs_of, warp_each
+from pinwarp.session.warp.component_words import applied_in_words
 
 FILES = "Meshes and landmarks ({});;All files (*)".format(
     " ".join(f"*{suffix}" for suffix in (*MESH_SUFFIXES, *LANDMARK_SUFFIXES))

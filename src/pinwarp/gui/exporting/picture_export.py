@@ -17,7 +17,7 @@ from pinwarp.gui.views.canvas import Canvas
 from pinwarp.io.animation import Frame, write_gif
 from pinwarp.io.atomic import atomic_path
 from pinwarp.session.editor import Editor
-from pinwarp.session.outputs.exports import applied_in_words
+from pinwarp.session.warp.component_words import applied_in_words
 
 
 class PictureExport:

@@ -18,7 +18,7 @@ from pinwarp.session.editor import Editor
 from pinwarp.session.judging.quality import quality_of
 from pinwarp.session.judging.report import report_of
 from pinwarp.session.judging.survey import Surveyor
-from pinwarp.session.outputs.exports import applied_in_words
+from pinwarp.session.warp.component_words import applied_in_words
 from pinwarp.session.warp.solver import WarpInputs, WarpSolver
 
 

@@ -27,9 +27,10 @@ from pinwarp.gui.painted.legend import LegendContent
 from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.gui.views.viewport import Viewport
 from pinwarp.gui.warp.warps import Presenter
-from pinwarp.session.editor import Editor, ViewState
+from pinwarp.session.editor import Editor
 from pinwarp.session.judging.survey import Survey, Surveyor
 from pinwarp.session.session import Session
+from pinwarp.session.view import ViewState
 from pinwarp.session.warp.solver import WarpResult
 
 MAP_ACTIONS = {kind: f"map_{kind.name.lower() if kind else 'none'}" for kind in (None, *MapKind)}

@@ -16,8 +16,9 @@ from pinwarp.gui.penalty.snapshots import Snapshots
 from pinwarp.gui.views.viewport import Viewport
 from pinwarp.gui.warp.quality import QualityPresenter
 from pinwarp.gui.warp.warps import Presenter
-from pinwarp.session.editor import Editor, ViewState
+from pinwarp.session.editor import Editor
 from pinwarp.session.judging.quality import Quality
+from pinwarp.session.view import ViewState
 
 
 class PenaltyTuning(QObject):

@@ -9,10 +9,10 @@ import numpy as np
 
 from pinwarp.core.landmarks import Landmark, LandmarkState, Position, Side, as_position
 from pinwarp.core.mesh import Mesh
-from pinwarp.session.editor import Selection, ViewState
 from pinwarp.session.judging.quality import Quality
 from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.session import Session
+from pinwarp.session.view import Selection, ViewState
 from pinwarp.session.warp.ghost import Ghost
 from pinwarp.session.warp.pair_names import pair_names
 from pinwarp.session.warp.solver import WarpResult, is_rounding

@@ -23,8 +23,9 @@ from pinwarp.gui.scene.camera_pose import (
 from pinwarp.gui.views.camera_link import CameraLink
 from pinwarp.gui.views.canvas import Canvas
 from pinwarp.gui.window.actions import icon
-from pinwarp.session.editor import Editor, LinkMode
+from pinwarp.session.editor import Editor
 from pinwarp.session.session import Session
+from pinwarp.session.view import LinkMode
 
 LINK_ACTIONS = {
     LinkMode.LINKED: "link_linked",

@@ -18,7 +18,8 @@ from pinwarp.core.spline import Spline
 from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.gui.views.canvas import Canvas
 from pinwarp.gui.warp.warps import Presenter
-from pinwarp.session.editor import Editor, GridKind
+from pinwarp.session.editor import Editor
+from pinwarp.session.view import GridKind
 
 GRID_ACTIONS = {kind: f"grid_{kind.name.lower()}" for kind in GridKind}
 

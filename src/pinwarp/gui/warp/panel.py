@@ -23,10 +23,11 @@ from pinwarp.core.components import Components
 from pinwarp.gui.style import theme
 from pinwarp.gui.warp.component_list import ComponentList, Remainder
 from pinwarp.gui.warp.figures_view import FiguresView
-from pinwarp.session.editor import GridKind, ViewState
 from pinwarp.session.judging.quality import Quality
 from pinwarp.session.judging.warp_figures import determined_in_words, rms_text, warp_figures
 from pinwarp.session.session import Session
+from pinwarp.session.view import GridKind, ViewState
+from pinwarp.session.warp.component_words import COMPONENT_WORDS
 
 _GRIDS = {
     GridKind.NONE: "None",
@@ -35,15 +36,6 @@ _GRIDS = {
     GridKind.PLANE_Y: "Plane across y",
     GridKind.PLANE_Z: "Plane across z",
 }
-_ENDS = {
-    Components.FULL: ("Aligned source", "Full warp"),
-    Components.WITHOUT_POSE: ("Source", "Without pose"),
-    Components.AFFINE: ("Aligned source", "Affine fit"),
-    Components.SIMILARITY: ("Aligned source", "Similarity fit"),
-    Components.RIGID: ("Aligned source", "Rigid fit: the same"),
-}
-
-
 TAKEN_APART = "The affine fit of the pairs, and how the full warp bends beyond it:"
 
 
@@ -168,8 +160,10 @@ class WarpPanel(QScrollArea):
         self.components.show_choice(session.components)
         self.blend_value.setText(f"{session.blend:.0%}")
         self.blend.setEnabled(bool(session.pairs) and session.components is not Components.RIGID)
-        for label, text in zip(self.ends, _ENDS[session.components], strict=True):
-            label.setText(text)
+        words = COMPONENT_WORDS[session.components]
+        same = ": the same" if session.components is Components.RIGID else ""
+        self.ends[0].setText(words.start.capitalize())
+        self.ends[1].setText(words.title + same)
         if not self.blend.isSliderDown():
             _place(self.blend, round(100 * session.blend))
         if unit_changed:

@@ -16,7 +16,7 @@ from pinwarp.gui.window.actions import icon
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.warp_figures import figures_table
-from pinwarp.session.outputs.exports import applied_in_words
+from pinwarp.session.warp.component_words import applied_in_words
 
 COMPONENT_ACTIONS = {part: f"apply_{part.name.lower()}" for part in Components}
 

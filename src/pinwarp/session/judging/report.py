@@ -14,8 +14,8 @@ from pinwarp.io.meshes import MeshFile
 from pinwarp.io.report import Figure, Report
 from pinwarp.session.judging.quality import Quality
 from pinwarp.session.judging.survey import Survey
-from pinwarp.session.outputs.exports import applied_in_words
 from pinwarp.session.session import Session
+from pinwarp.session.warp.component_words import applied_in_words
 from pinwarp.session.warp.solver import WarpResult
 from pinwarp.version import __version__
 

@@ -12,18 +12,12 @@ from numpy.typing import NDArray
 from pinwarp.core.components import Components
 from pinwarp.io.csv_text import csv_line
 from pinwarp.session.judging.quality import Quality
+from pinwarp.session.warp.component_words import COMPONENT_WORDS
 
 # Shorter than this share of the coordinates, a length is rounding.
 ROUNDING = 1e-9
 _SIGNIFICANT = 4
 
-_PARTS = {
-    Components.FULL: "full warp",
-    Components.WITHOUT_POSE: "warp without pose",
-    Components.AFFINE: "affine fit",
-    Components.SIMILARITY: "similarity fit",
-    Components.RIGID: "rigid fit",
-}
 _OPEN_DIRECTIONS = {
     0: "One place tells how far to move, and nothing else: turn and size stay as they are.",
     1: "Pairs on one line tell how far to move, the size, and one direction: the turn about the "
@@ -173,7 +167,7 @@ def figures_table(quality: Quality, unit: str) -> str:
     for part in Components:
         rms = quality.rms_by_components[part]
         tidy = rms if rms > _noise(quality) else 0.0
-        rows.append(("RMS left", _PARTS[part], f"{tidy:.10g}", unit))
+        rows.append(("RMS left", COMPONENT_WORDS[part].noun, f"{tidy:.10g}", unit))
     for row in warp_figures(quality, unit):
         rows += [(row.title, x.name, f"{x.value:.10g}", x.unit) for x in row.figures]
     return "".join(csv_line(row, "\t") for row in rows)

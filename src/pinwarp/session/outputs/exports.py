@@ -14,29 +14,6 @@ from pinwarp.io.coefficients import Coefficients
 from pinwarp.session.session import Session
 from pinwarp.version import __version__
 
-_IN_WORDS = {
-    Components.FULL: "the full warp",
-    Components.WITHOUT_POSE: "the warp without pose",
-    Components.AFFINE: "the affine fit only",
-    Components.SIMILARITY: "the similarity fit only",
-    Components.RIGID: "the rigid fit only",
-}
-
-
-def applied_in_words(session: Session) -> str:
-    """Say what of the warp is applied, to what is shown and to what is exported.
-
-    Examples
-    --------
-    >>> applied_in_words(Session(components=Components.AFFINE, blend=0.5))
-    'the affine fit only, 50% of the way from the aligned source'
-    """
-    words = _IN_WORDS[session.components]
-    if session.blend == 1 or session.components is Components.RIGID:
-        return words
-    start = "source" if session.components is Components.WITHOUT_POSE else "aligned source"
-    return f"{words}, {session.blend:.0%} of the way from the {start}"
-
 
 def warped_mesh(session: Session) -> Mesh:
     """Return the warped source mesh in double precision, for export.

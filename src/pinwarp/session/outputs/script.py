@@ -10,8 +10,8 @@ from pinwarp.core.components import Components
 from pinwarp.core.errors import PinwarpError
 from pinwarp.io.mesh_reference import MeshReference
 from pinwarp.io.meshes import MeshFile
-from pinwarp.session.outputs.exports import applied_in_words
 from pinwarp.session.session import Session
+from pinwarp.session.warp.component_words import applied_in_words
 from pinwarp.version import __version__
 
 

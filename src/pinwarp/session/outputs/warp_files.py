@@ -18,8 +18,8 @@ from pinwarp.io.landmark_files import LANDMARK_SUFFIXES, read_landmarks
 from pinwarp.io.meshes import MESH_SUFFIXES, read_mesh, write_mesh
 from pinwarp.session.importing.conversion import frame_notes, write_in_frame
 from pinwarp.session.outputs.exports import session_spline
+from pinwarp.session.outputs.replacing import refuse_to_replace
 from pinwarp.session.session import Session
-from pinwarp.session.study.batch import refuse_to_replace
 
 WARPED = "_warped"
 

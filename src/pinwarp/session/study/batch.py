@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import closing
@@ -14,6 +13,7 @@ from pinwarp.core.landmarks import Role
 from pinwarp.io.manifest import Manifest
 from pinwarp.io.meshes import MESH_SUFFIXES
 from pinwarp.io.summary_file import SummaryRow, read_summary, write_summary
+from pinwarp.session.outputs.replacing import refuse_to_replace
 from pinwarp.session.session import Session, to_record
 from pinwarp.session.study.subject import Outcome, Task, made_from, places_of, warp_subject
 from pinwarp.session.study.workers import Runner
@@ -131,26 +131,6 @@ def plan(
         read += [] if task.subject.destination_mesh is None else [task.subject.destination_mesh]
     refuse_to_replace(read, [folder / SUMMARY, *(path for task in tasks for path in task.outputs)])
     return tasks
-
-
-def refuse_to_replace(inputs: Iterable[Path], outputs: Iterable[Path]) -> None:
-    """Raise when an output is one of the inputs.
-
-    Raises
-    ------
-    PinwarpError
-        With the file's name and the way out.
-
-    Examples
-    --------
-    >>> refuse_to_replace([Path("femur.ply")], [Path("warped/femur.ply")])
-    """
-    real = {os.path.realpath(path) for path in inputs}
-    for path in outputs:
-        if os.path.realpath(path) in real:
-            raise PinwarpError(
-                f"{path} would be replaced, but it is read: choose another folder for the output."
-            )
 
 
 def run(
