@@ -16,8 +16,10 @@ from vtkmodules.vtkCommonCore import vtkObjectBase
 
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.app import make_application
+from pinwarp.gui.files.file_dialogs import Answer, OpenTwice, Overwrite
+from pinwarp.gui.files.lost_work_dialog import LostAnswer
 from pinwarp.gui.importing.dialog import ImportDialog
-from pinwarp.gui.tasks.dialogs import Answer, Existing, LostAnswer, OpenTwice, Overwrite
+from pinwarp.gui.tasks.dialogs import Existing
 from pinwarp.gui.window.main_window import MainWindow
 from pinwarp.io.samples import assets_folder, sample_session
 from pinwarp.session.keeping.recovery import LostWork

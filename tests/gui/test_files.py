@@ -12,7 +12,7 @@ from qtpy.QtWidgets import QApplication
 
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.files.documents import Opening
-from pinwarp.gui.tasks.dialogs import Answer
+from pinwarp.gui.files.file_dialogs import Answer
 from pinwarp.io.meshes import read_mesh
 from pinwarp.io.samples import assets_folder
 from pinwarp.io.session_file import read_session

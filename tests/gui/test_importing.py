@@ -14,7 +14,7 @@ from tests.gui.test_files import drop
 from pinwarp.core.landmarks import Landmark, Side, scaled
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui.files.documents import Opening
-from pinwarp.gui.tasks.dialogs import Dialogs
+from pinwarp.gui.window.window_dialogs import WindowDialogs
 from pinwarp.io.landmark_files import write_landmarks
 from pinwarp.io.meshes import read_mesh, write_mesh
 from pinwarp.io.samples import assets_folder, sample_session
@@ -510,7 +510,7 @@ def test_a_choice_is_what_its_button_says(user, label, answer):
         QTest.mouseClick(button, Qt.MouseButton.LeftButton)
 
     QTimer.singleShot(100, user.window, click)
-    dialogs = Dialogs(user.window)
+    dialogs = WindowDialogs(user.window)
     assert dialogs.ask_choice("Title", "Text", "More", ["First", "Second", "Leave"]) == answer
 
 
@@ -519,7 +519,7 @@ def test_escape_leaves_everything_at_a_choice(user):
         QTest.keyClick(QApplication.activeModalWidget(), Qt.Key.Key_Escape)
 
     QTimer.singleShot(100, user.window, escape)
-    assert Dialogs(user.window).ask_choice("Title", "Text", "", ["Do", "Leave"]) == 1
+    assert WindowDialogs(user.window).ask_choice("Title", "Text", "", ["Do", "Leave"]) == 1
 
 
 # Units beside numbers

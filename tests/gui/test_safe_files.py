@@ -12,7 +12,7 @@ from qtpy.QtWidgets import QApplication, QMessageBox
 from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui.files import saving
-from pinwarp.gui.tasks.dialogs import Answer, Dialogs, OpenTwice, Overwrite
+from pinwarp.gui.files.file_dialogs import Answer, FileDialogs, OpenTwice, Overwrite
 from pinwarp.io import backup
 from pinwarp.io.file_names import backup_of
 from pinwarp.io.meshes import read_mesh, write_mesh
@@ -260,7 +260,7 @@ def test_the_buttons_of_a_question_mean_what_they_say(user, label, answer):
         user.qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
 
     QTimer.singleShot(100, user.window, press)
-    assert Dialogs(user.window).ask_overwrite("femur.pinwarp.csv", "was changed") is answer
+    assert FileDialogs(user.window).ask_overwrite("femur.pinwarp.csv", "was changed") is answer
 
 
 def test_escape_at_a_question_cancels(user):
@@ -269,7 +269,7 @@ def test_escape_at_a_question_cancels(user):
         user.window,
         lambda: user.qtbot.keyClick(QApplication.activeModalWidget(), Qt.Key.Key_Escape),
     )
-    asked = Dialogs(user.window).ask_open_twice("femur", "in another window")
+    asked = FileDialogs(user.window).ask_open_twice("femur", "in another window")
     assert asked is OpenTwice.CANCEL
 
 
@@ -284,5 +284,5 @@ def test_a_mesh_of_the_same_name_can_be_used(user, tmp_path):
 
     QTimer.singleShot(100, user.window, press)
     other = tmp_path / "femur.stl"
-    asked = Dialogs(user.window).ask_missing_mesh("source", tmp_path / "x" / "femur.stl", other)
+    asked = FileDialogs(user.window).ask_missing_mesh("source", tmp_path / "x" / "femur.stl", other)
     assert asked == other

@@ -16,9 +16,9 @@ from threadpoolctl import threadpool_limits
 
 from pinwarp.core import kernel, surface_distance
 from pinwarp.gui.files.documents import Opening
-from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.views.fast_view import default_format
 from pinwarp.gui.window.main_window import MainWindow
+from pinwarp.gui.window.window_dialogs import WindowDialogs
 from pinwarp.io.samples import sample_session
 
 # Drawing a million triangles in software takes a while; a minute means that something hangs.
@@ -26,7 +26,7 @@ _LONGEST_WAIT_MS = 60_000
 _WARM_UP_AFTER_MS = 1_500
 
 
-class PrintedMessages(Dialogs):
+class PrintedMessages(WindowDialogs):
     """Says on the terminal what would wait for a click: for pictures without a user."""
 
     def __init__(self) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.gui.style.lengths import format_length
+from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, MESH_FILES, FileTasks, Progress
 from pinwarp.io.atomic import write_atomically
 from pinwarp.io.coefficients import COEFFICIENT_SUFFIXES, write_coefficients
@@ -37,7 +38,7 @@ class Exports:
         Runs, asks and tells.
     """
 
-    def __init__(self, editor: Editor, tasks: FileTasks) -> None:
+    def __init__(self, editor: Editor, tasks: FileTasks[Dialogs]) -> None:
         self._editor = editor
         self._tasks = tasks
 

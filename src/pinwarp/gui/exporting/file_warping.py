@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from pinwarp.core.errors import PinwarpError
-from pinwarp.gui.tasks.dialogs import Existing
+from pinwarp.gui.tasks.dialogs import Dialogs, Existing
 from pinwarp.gui.tasks.file_tasks import FileTasks, Progress
 from pinwarp.gui.tasks.jobs import Cancelled
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
@@ -30,7 +30,7 @@ class FileWarping:
         Runs, asks and tells.
     """
 
-    def __init__(self, editor: Editor, tasks: FileTasks) -> None:
+    def __init__(self, editor: Editor, tasks: FileTasks[Dialogs]) -> None:
         self._editor = editor
         self._tasks = tasks
 

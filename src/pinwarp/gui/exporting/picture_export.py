@@ -12,6 +12,7 @@ from pinwarp.core.landmarks import Side
 from pinwarp.gui.exporting.animation import AnimationOrder, Ends, Motion, animation_steps, ends_of
 from pinwarp.gui.exporting.picture import PictureOrder, picture_steps
 from pinwarp.gui.exporting.picture_dialogs import AnimationDialog, PictureDialog
+from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import FileTasks, Progress
 from pinwarp.gui.views.canvas import Canvas
 from pinwarp.io.animation import Frame, write_gif
@@ -36,7 +37,11 @@ class PictureExport:
     """
 
     def __init__(
-        self, editor: Editor, tasks: FileTasks, views: Mapping[Side, Canvas], window: QWidget
+        self,
+        editor: Editor,
+        tasks: FileTasks[Dialogs],
+        views: Mapping[Side, Canvas],
+        window: QWidget,
     ) -> None:
         self._editor = editor
         self._tasks = tasks

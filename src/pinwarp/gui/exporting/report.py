@@ -12,6 +12,7 @@ from qtpy.QtWidgets import QWidget
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.core.maps import MapKind
+from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import FileTasks, Progress
 from pinwarp.io.report import Picture, write_figures, write_report
 from pinwarp.session.editor import Editor
@@ -40,7 +41,7 @@ class ReportExport:
     def __init__(
         self,
         editor: Editor,
-        tasks: FileTasks,
+        tasks: FileTasks[Dialogs],
         views: Mapping[Side, QWidget],
         name: Callable[[], str],
     ) -> None:

@@ -8,14 +8,13 @@ from pathlib import Path
 
 from pinwarp.core.errors import PinwarpError, words_of
 from pinwarp.core.landmarks import Side
+from pinwarp.gui.files.file_dialogs import FileDialogs, OpenTwice
 from pinwarp.gui.files.recent_files import RecentFiles
 from pinwarp.gui.files.recovery import where_open
 from pinwarp.gui.files.saving import Saving
 from pinwarp.gui.files.session_meshes import SessionMeshes
 from pinwarp.gui.importing.imports import LandmarkImports
-from pinwarp.gui.tasks.dialogs import OpenTwice
 from pinwarp.gui.tasks.file_tasks import (
-    LANDMARK_FILES,
     MESH_FILES,
     SESSION_FILES,
     FileTasks,
@@ -25,10 +24,8 @@ from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
 from pinwarp.io.meshes import MESH_SUFFIXES, MeshFile
 from pinwarp.io.reading import hash_of
 from pinwarp.io.session_file import read_session
-from pinwarp.io.template import read_template
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
-from pinwarp.session.guide import next_incomplete, with_template
 from pinwarp.session.keeping.recovery import OtherWindow
 from pinwarp.session.mesh_units import scale_side, size_ratio, unit_factor
 from pinwarp.session.session import Session
@@ -82,7 +79,7 @@ class Documents:
     def __init__(
         self,
         editor: Editor,
-        tasks: FileTasks,
+        tasks: FileTasks[FileDialogs],
         recent: RecentFiles,
         saving: Saving,
         meshes: SessionMeshes,
@@ -236,26 +233,6 @@ class Documents:
             self._tasks.said.emit(f"Opened {path.name}: {len(session.pairs)} pairs")
 
         self._meshes.open(record, path.parent, f"Opening {path.name}", arrived)
-
-    def ask_and_load_template(self, loaded: Callable[[str | None], None]) -> None:
-        """Ask for a list of names and add those that are missing, to be placed.
-
-        Parameters
-        ----------
-        loaded
-            Called with the first landmark that is not complete then.
-        """
-        path = self._tasks.dialogs.ask_open("Load a template", LANDMARK_FILES, self._tasks.folder())
-        if path is None:
-            return
-
-        def arrived(names: tuple[str, ...]) -> None:
-            session = with_template(self._editor.committed, names)
-            self._editor.commit(session, f"Load template {path.name}")
-            self._tasks.said.emit(f"{len(names)} names from {path.name}")
-            loaded(next_incomplete(session, None))
-
-        self._tasks.run(f"Reading {path.name}", lambda _progress: read_template(path), arrived)
 
 
 def _mesh_summary(file: MeshFile) -> str:

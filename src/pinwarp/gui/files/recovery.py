@@ -9,6 +9,7 @@ from pathlib import Path
 from qtpy.QtCore import QObject, Qt, Signal
 
 from pinwarp.core.errors import words_of
+from pinwarp.gui.files.file_dialogs import FileDialogs
 from pinwarp.gui.files.lost_work_dialog import LostAnswer, moment_in_words
 from pinwarp.gui.files.saving import Saving
 from pinwarp.gui.files.session_meshes import SessionMeshes
@@ -41,7 +42,7 @@ class Recovery(QObject):
     def __init__(
         self,
         editor: Editor,
-        tasks: FileTasks,
+        tasks: FileTasks[FileDialogs],
         saving: Saving,
         meshes: SessionMeshes,
         state_folder: Path | None,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from pinwarp.core.errors import words_of
+from pinwarp.gui.files.file_dialogs import Answer, FileDialogs, Overwrite
 from pinwarp.gui.files.recent_files import RecentFiles
-from pinwarp.gui.tasks.dialogs import Answer, Overwrite
 from pinwarp.gui.tasks.file_tasks import SESSION_FILES, FileTasks
 from pinwarp.io.backup import write_keeping_previous
 from pinwarp.io.file_names import SESSION_SUFFIX, is_session, session_name
@@ -29,7 +29,7 @@ class Saving:
         Remembers sessions.
     """
 
-    def __init__(self, editor: Editor, tasks: FileTasks, recent: RecentFiles) -> None:
+    def __init__(self, editor: Editor, tasks: FileTasks[FileDialogs], recent: RecentFiles) -> None:
         self._editor = editor
         self._tasks = tasks
         self._recent = recent

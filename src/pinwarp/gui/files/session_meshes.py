@@ -10,6 +10,7 @@ from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui.drawn.surface import Surface
+from pinwarp.gui.files.file_dialogs import FileDialogs
 from pinwarp.gui.tasks.file_tasks import FileTasks, Progress
 from pinwarp.gui.tasks.jobs import Cancelled
 from pinwarp.io.mesh_reference import MeshReference
@@ -44,7 +45,9 @@ class SessionMeshes:
         Called with a mesh that was read and its surface, made ready in the job.
     """
 
-    def __init__(self, tasks: FileTasks, keep_surface: Callable[[Mesh, Surface], None]) -> None:
+    def __init__(
+        self, tasks: FileTasks[FileDialogs], keep_surface: Callable[[Mesh, Surface], None]
+    ) -> None:
         self._tasks = tasks
         self._keep_surface = keep_surface
         # Where the user has found a mesh, others may be too.

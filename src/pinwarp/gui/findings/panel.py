@@ -24,7 +24,7 @@ from qtpy.QtWidgets import (
 
 from pinwarp.core.findings import FindingKind
 from pinwarp.gui.style import theme
-from pinwarp.gui.table.columns import kept_icon
+from pinwarp.gui.style.icons import kept_icon
 from pinwarp.session.judging.quality import NamedFinding
 
 # Both of these may be wrong; of others one is enough.

@@ -8,6 +8,7 @@ from pathlib import Path
 from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.surface_distance import SurfaceIndex
+from pinwarp.gui.importing.import_dialogs import ImportDialogs
 from pinwarp.gui.style.lengths import distance_from_mesh
 from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, FileTasks, Progress
 from pinwarp.io.landmark_files import LandmarkReading, read_landmarks
@@ -35,7 +36,7 @@ class LandmarkImports:
         Runs, asks and tells.
     """
 
-    def __init__(self, editor: Editor, tasks: FileTasks) -> None:
+    def __init__(self, editor: Editor, tasks: FileTasks[ImportDialogs]) -> None:
         self._editor = editor
         self._tasks = tasks
         # While one file is asked about, the next ones wait: they may match what it brings.

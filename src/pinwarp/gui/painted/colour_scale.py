@@ -11,8 +11,8 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkLookupTable
 
 from pinwarp.core.maps import MapKind, Range
-from pinwarp.gui.painted.scale_bar import round_length
 from pinwarp.gui.style import theme
+from pinwarp.gui.style.lengths import round_length
 
 STEPS = 256
 # A legend of ratios that reaches further than so many doublings is written in powers of two.

@@ -2,36 +2,15 @@
 
 from __future__ import annotations
 
-import math
-
 from qtpy.QtCore import QLineF, QPointF, QRectF, Qt
 from qtpy.QtGui import QColor, QFontMetricsF, QPainter, QPen
 
 from pinwarp.gui.style import theme
+from pinwarp.gui.style.lengths import round_length
 
 # Logical pixels that a bar takes at most, and its distance from the corner.
 LONGEST = 120
 MARGIN = 14
-
-
-def round_length(longest: float) -> float:
-    """Return the largest of 1, 2, 5, 10, ... that is no longer than this.
-
-    Examples
-    --------
-    >>> round_length(73.2), round_length(0.0199)
-    (50.0, 0.01)
-    """
-    if not (math.isfinite(longest) and longest > 0):
-        return 0.0
-    exponent = math.floor(math.log10(longest))
-    # The power of ten is divided where it is negative: 5 / 100 is 0.05, 5 * 0.01 may not be.
-    lengths = [
-        digit * 10.0**power if power >= 0 else digit / 10.0**-power
-        for power in (exponent - 1, exponent, exponent + 1)
-        for digit in (1, 2, 5)
-    ]
-    return max(length for length in lengths if length <= longest)
 
 
 def length_text(length: float, unit: str) -> str:

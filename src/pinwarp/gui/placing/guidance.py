@@ -6,12 +6,13 @@ from psygnal import Signal
 from qtpy.QtWidgets import QLabel
 
 from pinwarp.core.landmarks import Side
-from pinwarp.gui.files.documents import Documents
 from pinwarp.gui.placing.guide_bar import GuideBar
 from pinwarp.gui.tasks.dialogs import Dialogs
+from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, FileTasks
 from pinwarp.gui.warp.warps import Presenter
+from pinwarp.io.template import read_template
 from pinwarp.session.editor import Editor
-from pinwarp.session.guide import next_incomplete, step_at
+from pinwarp.session.guide import next_incomplete, step_at, with_template
 
 
 class Guidance:
@@ -19,8 +20,10 @@ class Guidance:
 
     Parameters
     ----------
-    editor, presenter, documents, dialogs
+    editor, presenter
         Where the words come from.
+    tasks
+        Reads, asks and tells.
     bar, hint
         Where they are shown.
     """
@@ -31,15 +34,13 @@ class Guidance:
         self,
         editor: Editor,
         presenter: Presenter,
-        documents: Documents,
-        dialogs: Dialogs,
+        tasks: FileTasks[Dialogs],
         bar: GuideBar,
         hint: QLabel,
     ) -> None:
         self._editor = editor
         self._presenter = presenter
-        self._documents = documents
-        self._dialogs = dialogs
+        self._tasks = tasks
         self._bar = bar
         self._hint = hint
         bar.skip_requested.connect(lambda: self._step_guide(backwards=False))
@@ -120,12 +121,23 @@ class Guidance:
 
     def load_template(self) -> None:
         """Ask for a list of names and begin with the first that is not placed."""
-        self._documents.ask_and_load_template(lambda name: self._editor.look(guided=name))
+        editor, tasks = self._editor, self._tasks
+        path = tasks.dialogs.ask_open("Load a template", LANDMARK_FILES, tasks.folder())
+        if path is None:
+            return
+
+        def arrived(names: tuple[str, ...]) -> None:
+            session = with_template(editor.committed, names)
+            editor.commit(session, f"Load template {path.name}")
+            self.said.emit(f"{len(names)} names from {path.name}")
+            editor.look(guided=next_incomplete(session, None))
+
+        tasks.run(f"Reading {path.name}", lambda _progress: read_template(path), arrived)
 
     def ask_nudge(self) -> None:
         """Ask how far an arrow key moves."""
         unit, current = self._editor.session.unit, self._editor.view.nudge
-        text = self._dialogs.ask_text(
+        text = self._tasks.dialogs.ask_text(
             "Nudge step",
             f"An arrow key moves a landmark by this many {unit} (empty: 1/500 of the bone):",
             "" if current is None else f"{current:g}",
@@ -137,13 +149,13 @@ class Guidance:
         except ValueError:
             step = 0.0
         if step is not None and not 0 < step < float("inf"):
-            self._dialogs.tell_error("Nudge step", f"“{text}” is not a length above 0.")
+            self._tasks.dialogs.tell_error("Nudge step", f"“{text}” is not a length above 0.")
             return
         self._editor.look(nudge=step)
 
     def ask_pattern(self) -> None:
         """Ask what new landmarks are called."""
-        text = self._dialogs.ask_text(
+        text = self._tasks.dialogs.ask_text(
             "Name pattern",
             "What new landmarks are called; {n} is their number:",
             self._editor.view.name_pattern,
@@ -151,7 +163,7 @@ class Guidance:
         if text is None:
             return
         if text.count("{n}") != 1:
-            self._dialogs.tell_error(
+            self._tasks.dialogs.tell_error(
                 "Name pattern", "The pattern must hold {n} once, for the number."
             )
             return

@@ -4,12 +4,30 @@ from __future__ import annotations
 
 import math
 
-from pinwarp.gui.painted.scale_bar import round_length
-
 # From here on a number is written with a power of ten.
 _LARGEST = 1e6
 # Nobody places landmarks closer to a bone than this share of its size.
 _ON_MESH = 1e-4
+
+
+def round_length(longest: float) -> float:
+    """Return the largest of 1, 2, 5, 10, ... that is no longer than this.
+
+    Examples
+    --------
+    >>> round_length(73.2), round_length(0.0199)
+    (50.0, 0.01)
+    """
+    if not (math.isfinite(longest) and longest > 0):
+        return 0.0
+    exponent = math.floor(math.log10(longest))
+    # The power of ten is divided where it is negative: 5 / 100 is 0.05, 5 * 0.01 may not be.
+    lengths = [
+        digit * 10.0**power if power >= 0 else digit / 10.0**-power
+        for power in (exponent - 1, exponent, exponent + 1)
+        for digit in (1, 2, 5)
+    ]
+    return max(length for length in lengths if length <= longest)
 
 
 def format_number(value: float, digits: int = 3) -> str:

@@ -6,7 +6,6 @@ A new column, such as one of a quality, is one entry in :data:`COLUMNS` and a ca
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -19,7 +18,7 @@ from pinwarp.core.findings import Finding, FindingKind
 from pinwarp.core.landmarks import Landmark, LandmarkState, Side
 from pinwarp.gui.painted.markers import state_icon
 from pinwarp.gui.style import theme
-from pinwarp.gui.window.actions import icon
+from pinwarp.gui.style.icons import kept_icon
 from pinwarp.session import edits
 from pinwarp.session.coordinates import position_text, typed_position
 from pinwarp.session.judging.quality import NamedFinding
@@ -162,12 +161,6 @@ def _tick(row: Row) -> bool | None:
 
 def _lock_icon(row: Row) -> QIcon:
     return kept_icon("locked" if row.landmark.locked else "unlock")
-
-
-@functools.cache
-def kept_icon(name: str, colour: str = "") -> QIcon:
-    """Return an icon that is drawn often, in the colour of text or in one of its own."""
-    return icon(name, colour)
 
 
 def _lock_tip(row: Row) -> str:

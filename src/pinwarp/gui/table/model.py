@@ -15,7 +15,8 @@ from qtpy.QtWidgets import QWidget
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Landmark, LandmarkState, Side
 from pinwarp.gui.style import theme
-from pinwarp.gui.table.columns import COLUMNS, NAME, Column, Row, column_number, kept_icon
+from pinwarp.gui.style.icons import kept_icon
+from pinwarp.gui.table.columns import COLUMNS, NAME, Column, Row, column_number
 from pinwarp.session.judging.quality import NamedFinding, Quality
 from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.session import Session

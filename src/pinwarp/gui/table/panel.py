@@ -9,8 +9,8 @@ from qtpy.QtGui import QAction, QKeySequence, QResizeEvent
 from qtpy.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QMenu, QVBoxLayout, QWidget
 
 from pinwarp.gui.findings.panel import FindingsPanel
+from pinwarp.gui.style.icons import icon
 from pinwarp.gui.table.table import LandmarkTable
-from pinwarp.gui.window.actions import icon
 
 # The words of the row menu, by the keys of the actions; "focus" is whatever the key F does.
 _ROW_MENU = (

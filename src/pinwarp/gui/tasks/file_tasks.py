@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from psygnal import Signal
 
@@ -26,7 +26,11 @@ LANDMARK_FILES = "Landmarks ({});;All files (*)".format(
 Progress = Callable[[float, str], None]
 
 
-class FileTasks:
+# Tasks over all that the window may ask serve a capability that asks only some of it.
+Asking = TypeVar("Asking", bound=Dialogs, covariant=True)
+
+
+class FileTasks(Generic[Asking]):
     """Runs what reads and writes files, and says how it went; ``said`` emits short messages.
 
     Parameters
@@ -43,9 +47,7 @@ class FileTasks:
 
     said = Signal(str)
 
-    def __init__(
-        self, editor: Editor, jobs: SlowJob, stepped: SteppedJob, dialogs: Dialogs
-    ) -> None:
+    def __init__(self, editor: Editor, jobs: SlowJob, stepped: SteppedJob, dialogs: Asking) -> None:
         self._editor = editor
         self._jobs = jobs
         self._stepped = stepped

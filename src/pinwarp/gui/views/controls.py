@@ -20,9 +20,9 @@ from pinwarp.gui.scene.camera_pose import (
     pairing_fit,
     standard_frame,
 )
+from pinwarp.gui.style.icons import icon
 from pinwarp.gui.views.camera_link import CameraLink
 from pinwarp.gui.views.canvas import Canvas
-from pinwarp.gui.window.actions import icon
 from pinwarp.session.editor import Editor
 from pinwarp.session.session import Session
 from pinwarp.session.view import LinkMode

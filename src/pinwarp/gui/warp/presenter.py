@@ -9,10 +9,10 @@ from qtpy.QtGui import QAction, QActionGroup, QGuiApplication
 from qtpy.QtWidgets import QLabel
 
 from pinwarp.core.components import Components
+from pinwarp.gui.style.icons import icon
 from pinwarp.gui.warp.blend_player import BlendPlayer
 from pinwarp.gui.warp.panel import WarpPanel
 from pinwarp.gui.warp.quality import QualityPresenter
-from pinwarp.gui.window.actions import icon
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.warp_figures import figures_table

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from qtpy.QtCore import QByteArray, QObject, QSize, Qt
-from qtpy.QtGui import QAction, QIcon, QKeySequence, QPainter, QPixmap
-from qtpy.QtSvg import QSvgRenderer
+from qtpy.QtCore import QObject
+from qtpy.QtGui import QAction, QKeySequence
 
-from pinwarp.gui.style import theme
-from pinwarp.io.samples import assets_folder
+from pinwarp.gui.style.icons import icon
 
 
 @dataclass(frozen=True)
@@ -223,26 +221,3 @@ def make_actions(parent: QObject) -> dict[str, QAction]:
     actions["delete_side"].setShortcuts([QKeySequence("Del"), QKeySequence("Backspace")])
     actions["shortcuts"].setShortcuts([QKeySequence("F1"), QKeySequence("?")])
     return actions
-
-
-def icon(name: str, colour: str = "") -> QIcon:
-    """Return an icon of the project's own, in the colour of the window's text or in another."""
-    text = (assets_folder() / "icons" / f"{name}.svg").read_text(encoding="utf-8")
-    result = QIcon()
-    normal = colour or theme.text_colour().name()
-    selected = theme.selected_text_colour().name()
-    for mode, ink, opacity in (
-        (QIcon.Mode.Normal, normal, 1.0),
-        (QIcon.Mode.Selected, selected, 1.0),
-        (QIcon.Mode.Disabled, normal, 0.35),
-    ):
-        renderer = QSvgRenderer(QByteArray(text.replace("currentColor", ink).encode()))
-        for size in (20, 40, 64):
-            pixmap = QPixmap(QSize(size, size))
-            pixmap.fill(Qt.GlobalColor.transparent)
-            painter = QPainter(pixmap)
-            painter.setOpacity(opacity)
-            renderer.render(painter)
-            painter.end()
-            result.addPixmap(pixmap, mode)
-    return result

@@ -23,11 +23,12 @@ from pinwarp.gui.maps.panel import MapPanel
 from pinwarp.gui.penalty.panel import PenaltyPanel
 from pinwarp.gui.penalty.snapshot_strip import SnapshotStrip
 from pinwarp.gui.placing.guide_bar import GuideBar
+from pinwarp.gui.style.icons import icon
 from pinwarp.gui.table.panel import LandmarkPanel
 from pinwarp.gui.table.table import LandmarkModel, LandmarkTable
 from pinwarp.gui.views.viewport import Viewport
 from pinwarp.gui.warp.panel import WarpPanel
-from pinwarp.gui.window.actions import icon, make_actions
+from pinwarp.gui.window.actions import make_actions
 from pinwarp.gui.window.menus import fill_toolbar, make_menus, shortcut_groups
 from pinwarp.gui.window.shortcut_overlay import ShortcutOverlay
 

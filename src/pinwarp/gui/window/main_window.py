@@ -24,7 +24,6 @@ from pinwarp.gui.maps.presenter import MapPresenter
 from pinwarp.gui.penalty.tuning import PenaltyTuning
 from pinwarp.gui.placing.guidance import Guidance
 from pinwarp.gui.table.presenter import TablePresenter
-from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import FileTasks
 from pinwarp.gui.tasks.jobs import SlowJob
 from pinwarp.gui.tasks.progress import JobProgress
@@ -37,6 +36,7 @@ from pinwarp.gui.warp.warps import Presenter
 from pinwarp.gui.window.bone_edits import BoneEdits
 from pinwarp.gui.window.frame import WindowFrame
 from pinwarp.gui.window.help_text import ABOUT, ABOUT_PENALTY, ABOUT_QUALITY
+from pinwarp.gui.window.window_dialogs import WindowDialogs
 from pinwarp.io.file_names import session_name
 from pinwarp.io.samples import sample_session
 from pinwarp.session.editor import Editor
@@ -59,7 +59,7 @@ class MainWindow(WindowFrame):
     def __init__(
         self,
         settings: QSettings,
-        dialogs: Dialogs | None = None,
+        dialogs: WindowDialogs | None = None,
         state_folder: Path | None = None,
     ) -> None:
         super().__init__()
@@ -67,7 +67,7 @@ class MainWindow(WindowFrame):
         self.editor = Editor()
         self.jobs = SlowJob(self)
         self.stepped = SteppedJob(self)
-        self._dialogs = dialogs or Dialogs(self)
+        self._dialogs = dialogs or WindowDialogs(self)
         self._recent = RecentFiles(settings)
         progress = JobProgress(self.statusBar(), (self.jobs, self.stepped))
         self.progress, self.cancel = progress.bar, progress.cancel
@@ -130,7 +130,7 @@ class MainWindow(WindowFrame):
             self.editor, self._tasks, self.viewports, lambda: session_name(self.editor.path)
         )
         self.guidance = Guidance(
-            self.editor, self.presenter, self.documents, self._dialogs, self.guide_bar, self.hint
+            self.editor, self.presenter, self._tasks, self.guide_bar, self.hint
         )
         self.table_presenter = TablePresenter(
             self.editor,

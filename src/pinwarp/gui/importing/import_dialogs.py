@@ -1,0 +1,19 @@
+"""The question that an import asks."""
+
+from __future__ import annotations
+
+from pinwarp.gui.importing.dialog import ImportDialog
+from pinwarp.gui.tasks.dialogs import Dialogs
+from pinwarp.session.importing.landmarks import Arriving, ImportChoice
+from pinwarp.session.session import Session
+
+
+class ImportDialogs(Dialogs):
+    """The dialogs of importing."""
+
+    def ask_import(self, session: Session, arriving: Arriving) -> ImportChoice | None:
+        """Show what a landmark file holds, and ask how to bring it in; None leaves it."""
+        dialog = ImportDialog(session, arriving, self.window)
+        accepted = dialog.exec()
+        dialog.deleteLater()
+        return dialog.choice if accepted else None
