@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from tests.session.study import bone, shape
 
+from pinwarp.core.components import Components
 from pinwarp.core.landmarks import Landmark, Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.io.landmark_files import read_landmarks, write_landmarks
@@ -63,7 +64,7 @@ def test_options_go_before_what_the_session_says(pinwarp_command, session, tmp_p
     opened = read_session(session)
     for name, options, changed in (
         ("a", ["--penalty", "inf"], edits.set_penalty(opened, np.inf)),
-        ("b", ["--components", "rigid"], replace(opened, components="rigid")),
+        ("b", ["--components", "rigid"], edits.set_components(opened, Components.RIGID)),
         ("c", ["--blend", "0.5"], edits.set_blend(opened, 0.5)),
     ):
         out = tmp_path / f"{name}.ply"

@@ -70,7 +70,7 @@ def survey(session, kind, surveyor=None, **options):
 def warp_of(session):
     source, destination = (np.array([p.position(s) for p in session.pairs]) for s in Side)
     factor = factorise(source)
-    return factor, destination, solve(factor, destination, session.warping_penalty)
+    return factor, destination, solve(factor, destination, session.settings.penalty)
 
 
 def slope(session, at):
@@ -106,7 +106,7 @@ def test_the_stretch_maps_are_the_ends_of_what_the_derivative_does_to_directions
 def test_the_uncertainty_is_the_square_root_of_the_kriging_variance(session):
     found = survey(session, MapKind.UNCERTAINTY).map
     factor, destination, _ = warp_of(session)
-    source, n, s = factor.source, len(factor.source), session.warping_penalty
+    source, n, s = factor.source, len(factor.source), session.settings.penalty
     drift = np.column_stack([np.ones(n), source])
     M = np.block([[-cdist(source, source) + s * np.eye(n), drift], [drift.T, np.zeros((4, 4))]])
     inverse = np.linalg.inv(M)

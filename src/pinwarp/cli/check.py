@@ -12,10 +12,11 @@ from rich.markup import escape
 from rich.table import Table
 
 from pinwarp.cli.options import SessionFile
+from pinwarp.io.setting_keys import plain_settings
 from pinwarp.session.judging import check as checking
 from pinwarp.session.keeping.files import read_session
 from pinwarp.session.session import Session
-from pinwarp.session.warp.component_words import applied_in_words
+from pinwarp.session.warp.setting_words import settings_in_words
 from pinwarp.version import __version__
 
 FLAGGED = 1
@@ -39,7 +40,7 @@ def check(
     if as_json:
         about = _about(opened)
         # The affine fit's penalty is no number to JSON; session files say "inf", too.
-        if math.isinf(opened.warping_penalty):
+        if math.isinf(opened.settings.penalty):
             about["warping_penalty"] = "inf"
         words = about | checked.as_json()
         typer.echo(json.dumps(words, indent=2, ensure_ascii=False, allow_nan=False))
@@ -53,10 +54,7 @@ def _about(session: Session) -> dict[str, Any]:
     return {
         "pinwarp": __version__,
         "unit": session.unit,
-        "warping_penalty": session.warping_penalty,
-        "penalty_convention": session.convention.value,
-        "components": session.components.value,
-        "blend": session.blend,
+        **plain_settings(session.settings),
     }
 
 
@@ -90,8 +88,7 @@ def _print(console: Console, name: str, session: Session, checked: checking.Chec
 def _figures(session: Session, checked: checking.Check) -> list[tuple[str, str]]:
     unit = session.unit
     figures = [
-        ("Applied", applied_in_words(session)),
-        ("Warping penalty", f"{session.warping_penalty:.6g} {unit} ({session.convention.value})"),
+        *settings_in_words(session.settings, unit),
         ("Suggested penalty", _length(checked.suggested_penalty, unit, "none")),
         (
             "Flexibility",

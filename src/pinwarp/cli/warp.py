@@ -66,6 +66,7 @@ def warp(
                 failed += 1
                 continue
             tell_notes(file.notes, file.source.name)
-            typer.echo(f"{file.output}: {applied_in_words(opened)}, {len(opened.pairs)} pairs")
+            applied = applied_in_words(opened.settings)
+            typer.echo(f"{file.output}: {applied}, {len(opened.pairs)} pairs")
     if failed:
         raise typer.Exit(BAD_USAGE)

@@ -95,12 +95,12 @@ def ends_of(session: Session) -> Ends:
     mesh = session.mesh(Side.SOURCE)
     if mesh is None:
         raise PinwarpError("There is no source mesh to warp: open one first.")
-    if session.components is Components.RIGID:
+    if session.settings.components is Components.RIGID:
         raise PinwarpError(
             "Only the rigid fit is applied, which is where the blend begins: nothing would move. "
             "Choose another part in Warp > Apply."
         )
-    warp, part = solved(session), as_drawn(session.components)
+    warp, part = solved(session), as_drawn(session.settings.components)
     aligned, warped = (
         warp.applied(part, blend).evaluate(mesh.vertices).astype(np.float32) for blend in (0, 1)
     )

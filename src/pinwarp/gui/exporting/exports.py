@@ -60,7 +60,8 @@ class Exports:
             return
         carried = warped_passengers if passengers else warped_landmarks
         session = self._editor.committed
-        self._write(path, lambda: carried(session), Side.DESTINATION, applied_in_words(session))
+        applied = applied_in_words(session.settings)
+        self._write(path, lambda: carried(session), Side.DESTINATION, applied)
 
     def _write(
         self,
@@ -112,8 +113,8 @@ class Exports:
 
     def _say_exported(self, path: Path, session: Session) -> None:
         pairs = len(session.pairs)
-        penalty = f"penalty {format_length(session.warping_penalty, session.unit, 6)}"
-        what = applied_in_words(session)
+        penalty = f"penalty {format_length(session.settings.penalty, session.unit, 6)}"
+        what = applied_in_words(session.settings)
         self._tasks.said.emit(f"Exported {path.name}: {what} ({pairs} pairs, {penalty})")
 
     def ask_and_export_mesh(self) -> None:

@@ -83,7 +83,7 @@ class FileWarping:
             return done
 
         def arrived(done: list[WarpedFile]) -> None:
-            self._sum_up(done, len(pairs), folder, applied_in_words(session))
+            self._sum_up(done, len(pairs), folder, applied_in_words(session.settings))
 
         self._tasks.run("Warping files", warp, arrived)
 

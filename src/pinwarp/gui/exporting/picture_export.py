@@ -95,7 +95,7 @@ class PictureExport:
         session = self._editor.committed
         what = self._shown((Side.DESTINATION,))
         if order.motion is Motion.BLEND:
-            what = f", to {applied_in_words(session)}"
+            what = f", to {applied_in_words(session.settings)}"
 
         def rendered(frames: list[Frame]) -> None:
             def write(progress: Progress) -> None:
@@ -131,7 +131,7 @@ class PictureExport:
         """Say which part of the warp can be seen, where it can."""
         session = self._editor.committed
         seen = Side.DESTINATION in sides and self._editor.view.overlay and bool(session.pairs)
-        return f", {applied_in_words(session)}" if seen else ""
+        return f", {applied_in_words(session.settings)}" if seen else ""
 
 
 def _write_png(path: Path, image: QImage) -> None:

@@ -83,10 +83,10 @@ class ReportExport:
         self._tasks.run(f"Exporting {path.name}", write, arrived)
 
     def _pictures(self) -> list[Picture]:
-        session = self._editor.committed
+        applied = applied_in_words(self._editor.committed.settings)
         captions = {
             Side.SOURCE: "Source",
-            Side.DESTINATION: f"Destination, with {applied_in_words(session)} of the source",
+            Side.DESTINATION: f"Destination, with {applied} of the source",
         }
         return [Picture(captions[side], _png(view)) for side, view in self._views.items()]
 

@@ -131,7 +131,7 @@ def warnings_of(session: Session, result: WarpResult | None) -> str:
         ]
         if not has_modes:
             notes.append("The penalty acts from five pairs on.")
-    if session.convention is PenaltyConvention.OPYNSIM and has_modes and not notes:
+    if session.settings.convention is PenaltyConvention.OPYNSIM and has_modes and not notes:
         notes.append(
             "OPynSim's published equation has poles (the ticks): the warp overshoots before "
             "each and flips behind it."

@@ -184,7 +184,7 @@ class Snapshots(QObject):
         now = WarpInputs.of(self._editor.session)
         for tile in self._strip.tiles:
             changed = tile.snapshot.what_changed(now)
-            tile.show_state(changed, tile.snapshot.inputs.penalty == now.penalty)
+            tile.show_state(changed, tile.snapshot.inputs.settings.penalty == now.settings.penalty)
 
 
 def picture_of(canvas: Canvas) -> QImage:

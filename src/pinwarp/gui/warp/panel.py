@@ -157,15 +157,17 @@ class WarpPanel(QScrollArea):
         """Show what a session applies."""
         unit_changed = session.unit != self._session.unit
         self._session = session
-        self.components.show_choice(session.components)
-        self.blend_value.setText(f"{session.blend:.0%}")
-        self.blend.setEnabled(bool(session.pairs) and session.components is not Components.RIGID)
-        words = COMPONENT_WORDS[session.components]
-        same = ": the same" if session.components is Components.RIGID else ""
+        settings = session.settings
+        is_rigid = settings.components is Components.RIGID
+        self.components.show_choice(settings.components)
+        self.blend_value.setText(f"{settings.blend:.0%}")
+        self.blend.setEnabled(bool(session.pairs) and not is_rigid)
+        words = COMPONENT_WORDS[settings.components]
+        same = ": the same" if is_rigid else ""
         self.ends[0].setText(words.start.capitalize())
         self.ends[1].setText(words.title + same)
         if not self.blend.isSliderDown():
-            _place(self.blend, round(100 * session.blend))
+            _place(self.blend, round(100 * settings.blend))
         if unit_changed:
             self.show_quality(self._quality)
 

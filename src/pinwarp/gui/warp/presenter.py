@@ -92,17 +92,18 @@ class WarpPresenter(QObject):
 
     def _on_session(self, _changed: object = None) -> None:
         session = self._editor.session
-        self._actions[COMPONENT_ACTIONS[session.components]].setChecked(True)
+        self._actions[COMPONENT_ACTIONS[session.settings.components]].setChecked(True)
         self._panel.show_session(session)
         self._actions["play_blend"].setEnabled(
-            bool(session.pairs) and session.components is not Components.RIGID
+            bool(session.pairs) and session.settings.components is not Components.RIGID
         )
         # What is not the whole warp must not be taken for it, here or in a file.
-        whole = session.components is Components.FULL and session.blend == 1
+        whole = session.settings.is_whole
         if self.player.is_playing:
             self.note.setText("Playing the blend: Esc or a click stops it")
         else:
-            self.note.setText("" if whole else f"Shown and exported: {applied_in_words(session)}")
+            applied = applied_in_words(session.settings)
+            self.note.setText("" if whole else f"Shown and exported: {applied}")
 
     def _on_view(self, _changed: object = None) -> None:
         self._panel.show_view(self._editor.view)
@@ -121,7 +122,7 @@ class WarpPresenter(QObject):
 
     def _apply(self, components: Components) -> None:
         session = edits.set_components(self._editor.committed, components)
-        self._editor.commit(session, f"Apply {applied_in_words(session)}")
+        self._editor.commit(session, f"Apply {applied_in_words(session.settings)}")
         self._editor.look(overlay=True)
 
     def _preview(self, blend: float) -> None:

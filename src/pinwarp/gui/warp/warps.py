@@ -295,7 +295,7 @@ class Presenter:
             self._table_shown_at = now
             self._model.show_result(result)
         # Each widget that changes costs a composition of the window: only the slider's is live.
-        if due or result.inputs.penalty != self._editor.committed.warping_penalty:
+        if due or result.inputs.settings.penalty != self._editor.committed.settings.penalty:
             self._panel.show_result(result)
         self._on_looks()
         self.result_changed.emit(result, shaded.kind is not _Kind.PREVIEW, shaded.quality)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from pinwarp.core.components import Components
-from pinwarp.core.errors import PinwarpError
-from pinwarp.core.spline import PenaltyConvention, check_penalty
+from pinwarp.core.settings import WarpSettings
+from pinwarp.core.spline import PenaltyConvention
 from pinwarp.session.session import Session
 
 __all__ = [
@@ -23,23 +23,29 @@ UNITS = ("mm", "cm", "m")
 
 
 def set_penalty(session: Session, penalty: float) -> Session:
-    """Set the warping penalty, in mesh units."""
-    return replace(session, warping_penalty=check_penalty(penalty))
+    """Set the warping penalty, in mesh units.
+
+    Raises
+    ------
+    PenaltyError
+        When it is negative or NaN.
+    """
+    return _with(session, replace(session.settings, penalty=penalty))
 
 
 def set_convention(session: Session, convention: PenaltyConvention) -> Session:
     """Choose the equation that the penalty enters."""
-    return replace(session, convention=convention)
+    return _with(session, replace(session.settings, convention=convention))
 
 
 def set_planar(session: Session, planar: bool) -> Session:
     """Treat nearly planar landmarks as planar, or not."""
-    return replace(session, planar=planar)
+    return _with(session, replace(session.settings, planar=planar))
 
 
 def set_components(session: Session, components: Components) -> Session:
     """Choose what of the warp is applied, on the screen and in exports."""
-    return replace(session, components=components)
+    return _with(session, replace(session.settings, components=components))
 
 
 def set_blend(session: Session, blend: float) -> Session:
@@ -50,11 +56,13 @@ def set_blend(session: Session, blend: float) -> Session:
     PinwarpError
         When the blend is not from 0 to 1.
     """
-    if not 0 <= blend <= 1:
-        raise PinwarpError(f"The blend is {blend:.6g}; it must be from 0 to 1.")
-    return replace(session, blend=float(blend))
+    return _with(session, replace(session.settings, blend=blend))
 
 
 def set_unit(session: Session, unit: str) -> Session:
     """Name the unit of the meshes."""
     return replace(session, unit=unit)
+
+
+def _with(session: Session, settings: WarpSettings) -> Session:
+    return replace(session, settings=settings)

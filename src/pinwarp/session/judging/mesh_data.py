@@ -15,7 +15,6 @@ from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.normals import vertex_normals
 from pinwarp.core.prediction import Prediction, prediction_of
-from pinwarp.core.spline import PenaltyConvention
 from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.io.mesh_formats.vertex_data import VertexData
 from pinwarp.session.outputs.exports import SolvedWarp, solved
@@ -85,13 +84,13 @@ def warped_mesh_data(
     if destination is not None:
         progress(0.1, "measuring distances")
         index = SurfaceIndex(destination)
-        drawn = warp.applied(as_drawn(session.components), session.blend)
+        drawn = warp.applied(as_drawn(session.settings.components), session.settings.blend)
         found[f"distance{unit}"] = _in_parts(
             lambda places: index.distances(drawn.evaluate(places))[:, None],
             source.vertices,
             lambda share: progress(0.1 + 0.4 * share, "measuring distances"),
         )[:, 0]
-    applied = warp.applied(session.components, session.blend)
+    applied = warp.applied(session.settings.components, session.settings.blend)
 
     def derivatives(places: Matrix) -> Matrix:
         jacobian = jacobians(applied, places)
@@ -114,12 +113,12 @@ def warped_mesh_data(
 
 def _prediction(session: Session, warp: SolvedWarp) -> Prediction | None:
     """Return what predicts the warp as applied, None where nothing does."""
-    penalty = session.warping_penalty
-    if session.blend != 1 or (session.convention is PenaltyConvention.OPYNSIM and penalty > 0):
+    settings = session.settings
+    if settings.blend != 1 or not settings.is_regular:
         return None
-    match session.components:
+    match settings.components:
         case Components.FULL | Components.WITHOUT_POSE:
-            return prediction_of(warp.factor, warp.destination, penalty)
+            return prediction_of(warp.factor, warp.destination, settings.penalty)
         case Components.AFFINE:
             return prediction_of(warp.factor, warp.destination, math.inf)
         case _:

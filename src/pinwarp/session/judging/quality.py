@@ -20,7 +20,7 @@ from pinwarp.core.quality import (
     leave_one_out,
     penalty_curve,
 )
-from pinwarp.core.spline import PenaltyConvention, Spline, solve
+from pinwarp.core.spline import Spline, solve
 from pinwarp.core.suspects import is_mirrored, suspects, swapped_pairs
 from pinwarp.session.session import Session
 from pinwarp.session.warp.pair_names import pair_names
@@ -164,9 +164,8 @@ def quality_of(result: WarpResult) -> Quality | None:
     enough = len(inputs.source) >= LEAST_PAIRS and len(factor.poles) > 0
     if enough:
         curve = penalty_curve(factor, destination)
-        regular = inputs.convention is PenaltyConvention.REGULARISING or inputs.penalty == 0
-        if regular:
-            left_out = leave_one_out(factor, destination, inputs.penalty)
+        if inputs.settings.is_regular:
+            left_out = leave_one_out(factor, destination, inputs.settings.penalty)
     found = _about_pairs(factor, inputs.source, destination) if enough else ()
     isolated = tuple(finding for finding in found if not finding.is_grave)
     grave = tuple(finding for finding in found if finding.is_grave)

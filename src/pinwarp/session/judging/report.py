@@ -15,7 +15,7 @@ from pinwarp.io.report import Figure, Report
 from pinwarp.session.judging.quality import Quality
 from pinwarp.session.judging.survey import Survey
 from pinwarp.session.session import Session
-from pinwarp.session.warp.component_words import applied_in_words
+from pinwarp.session.warp.setting_words import settings_in_words
 from pinwarp.session.warp.solver import WarpResult
 from pinwarp.version import __version__
 
@@ -89,16 +89,10 @@ def report_of(
 def _facts(session: Session, result: WarpResult) -> tuple[tuple[str, str], ...]:
     unit = session.unit
     facts = [(f"{side.value.capitalize()} mesh", _mesh_text(session, side)) for side in Side]
-    penalty = session.warping_penalty
     facts += [
         ("Pairs", f"{len(session.pairs)} of {len(session.landmarks)} landmarks"),
         ("Unit", unit),
-        (
-            "Warping penalty",
-            "infinite (the affine fit)" if np.isinf(penalty) else f"{penalty:.6g} {unit}",
-        ),
-        ("Convention", session.convention.value),
-        ("Applied", applied_in_words(session)),
+        *settings_in_words(session.settings, unit),
     ]
     if result.flexibility is not None:
         facts.append(("Flexibility", f"{result.flexibility:.0%}"))

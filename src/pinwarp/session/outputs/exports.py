@@ -102,9 +102,7 @@ def session_coefficients(session: Session) -> Coefficients:
         spline=session_spline(session),
         names=tuple(pair.name for pair in session.pairs),
         unit=session.unit,
-        components=session.components.value,
-        blend=session.blend,
-        planar=session.planar,
+        settings=session.settings,
         source_sha256=source.sha256 if source is not None else "",
         destination_sha256=destination.sha256 if destination is not None else "",
         source_mirrored=source.mirrored if source is not None else "",
@@ -149,9 +147,9 @@ def solved(session: Session) -> SolvedWarp:
     pairs = session.pairs
     if not pairs:
         raise PinwarpError("There is no pair yet: place a landmark on both meshes first.")
-    factor = factorise(positions(pairs, Side.SOURCE), planar=session.planar)
+    factor = factorise(positions(pairs, Side.SOURCE), planar=session.settings.planar)
     destination = positions(pairs, Side.DESTINATION)
-    spline = solve(factor, destination, session.warping_penalty, session.convention)
+    spline = solve(factor, destination, session.settings.penalty, session.settings.convention)
     return SolvedWarp(factor, destination, spline)
 
 
@@ -163,4 +161,4 @@ def session_spline(session: Session) -> Spline:
     PinwarpError
         When there is no pair, or the solve fails.
     """
-    return solved(session).applied(session.components, session.blend)
+    return solved(session).applied(session.settings.components, session.settings.blend)

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError, PinwarpError, words_of
 from pinwarp.core.landmarks import Role
-from pinwarp.io.manifest import Manifest
+from pinwarp.core.settings import WarpSettings
+from pinwarp.io.manifest import Manifest, Subject
 from pinwarp.io.meshes import MESH_SUFFIXES
 from pinwarp.io.summary_file import SummaryRow, read_summary, write_summary
 from pinwarp.session.outputs.replacing import refuse_to_replace
@@ -91,7 +92,7 @@ def plan(
     ...     read_session(sample_session()),
     ...     Path("/study/warped"),
     ... )
-    >>> task.mesh.name, task.session.warping_penalty
+    >>> task.mesh.name, task.session.settings.penalty
     ('anna_warped.ply', 0.5)
     """
     record = to_record(source)
@@ -113,10 +114,7 @@ def plan(
             manifest=manifest.path,
             session=replace(
                 shared,
-                warping_penalty=(
-                    shared.warping_penalty if subject.penalty is None else subject.penalty
-                ),
-                components=subject.components or shared.components,
+                settings=_settings(shared.settings, subject),
             ),
             mesh=folder / f"{subject.name}_warped{suffix}",
             passengers=(
@@ -131,6 +129,15 @@ def plan(
         read += [] if task.subject.destination_mesh is None else [task.subject.destination_mesh]
     refuse_to_replace(read, [folder / SUMMARY, *(path for task in tasks for path in task.outputs)])
     return tasks
+
+
+def _settings(shared: WarpSettings, subject: Subject) -> WarpSettings:
+    """Return the settings for one subject: its row of the manifest goes before the source's."""
+    return replace(
+        shared,
+        penalty=shared.penalty if subject.penalty is None else subject.penalty,
+        components=subject.components or shared.components,
+    )
 
 
 def run(
@@ -244,7 +251,7 @@ def _row(task: Task, result: Outcome | Exception) -> SummaryRow:
     distance = checked.distance
     figures = {
         "pairs": len(checked.pairs),
-        "penalty": task.session.warping_penalty,
+        "penalty": task.session.settings.penalty,
         "rms_residual": checked.rms_residual,
         "rms_leave_one_out": checked.rms_leave_one_out,
         "suggested_penalty": checked.suggested_penalty,

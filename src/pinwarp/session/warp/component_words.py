@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pinwarp.core.components import Components
-from pinwarp.session.session import Session
+from pinwarp.core.settings import WarpSettings
 
 
 @dataclass(frozen=True)
@@ -54,16 +54,16 @@ COMPONENT_WORDS = {
 _FITS = (Components.AFFINE, Components.SIMILARITY, Components.RIGID)
 
 
-def applied_in_words(session: Session) -> str:
+def applied_in_words(settings: WarpSettings) -> str:
     """Say what of the warp is applied, to what is shown and to what is exported.
 
     Examples
     --------
-    >>> applied_in_words(Session(components=Components.AFFINE, blend=0.5))
+    >>> applied_in_words(WarpSettings(components=Components.AFFINE, blend=0.5))
     'the affine fit only, 50% of the way from the aligned source'
     """
-    words = COMPONENT_WORDS[session.components]
-    said = f"the {words.noun}" + (" only" if session.components in _FITS else "")
-    if session.blend == 1 or session.components is Components.RIGID:
+    words = COMPONENT_WORDS[settings.components]
+    said = f"the {words.noun}" + (" only" if settings.components in _FITS else "")
+    if settings.blend == 1 or settings.components is Components.RIGID:
         return said
-    return f"{said}, {session.blend:.0%} of the way from the {words.start}"
+    return f"{said}, {settings.blend:.0%} of the way from the {words.start}"

@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.core.components import Components, applied, as_drawn
+from pinwarp.core.components import Components, applied
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.factor import SourceFactor, factorise
-from pinwarp.core.landmarks import Position, Role, Side
+from pinwarp.core.landmarks import Position, Side
 from pinwarp.core.live import Influence, PenaltySweep, PreviewPoints, can_follow, preview
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import PenaltyConvention, Spline, solve
 from pinwarp.session.session import Session
 
@@ -31,14 +32,10 @@ class WarpInputs:
 
     source: tuple[Position, ...]
     destination: tuple[Position, ...]
-    penalty: float
-    convention: PenaltyConvention
-    planar: bool
+    settings: WarpSettings
     mesh: Mesh | None
     stand_in: Mesh | None
     passengers: tuple[Position, ...]
-    components: Components = Components.FULL
-    blend: float = 1.0
 
     @classmethod
     def of(cls, session: Session, stand_in: Mesh | None = None) -> WarpInputs:
@@ -55,24 +52,13 @@ class WarpInputs:
         return cls(
             source=tuple(pair.source for pair in pairs if pair.source is not None),
             destination=tuple(pair.destination for pair in pairs if pair.destination is not None),
-            penalty=session.warping_penalty,
-            convention=session.convention,
-            planar=session.planar,
+            settings=session.settings.drawn,
             mesh=session.mesh(Side.SOURCE),
             stand_in=stand_in,
             passengers=tuple(
-                landmark.source
-                for landmark in session.landmarks
-                if landmark.role is Role.PASSENGER and landmark.source is not None
+                passenger.source for passenger in session.passengers if passenger.source is not None
             ),
-            components=as_drawn(session.components),
-            blend=session.blend,
         )
-
-    @property
-    def is_whole(self) -> bool:
-        """Whether the warp is applied as it is solved."""
-        return self.components is Components.FULL and self.blend == 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,9 +110,9 @@ class WarpResult:
         """Share of non-affine freedom left; None where the penalty has nothing to act on."""
         if self.factor is None or not self.factor.has_modes or not len(self.factor.poles):
             return None
-        if self.inputs.convention is PenaltyConvention.OPYNSIM and self.inputs.penalty > 0:
+        if not self.inputs.settings.is_regular:
             return None
-        return self.factor.flexibility(self.inputs.penalty)
+        return self.factor.flexibility(self.inputs.settings.penalty)
 
 
 class WarpSolver:
@@ -227,26 +213,27 @@ class WarpSolver:
                 known is not None
                 and known.shown is not None
                 and known.spline is spline
-                and (known.inputs.components, known.inputs.blend)
-                == (inputs.components, inputs.blend)
+                and known.inputs.settings == inputs.settings
             ):
                 return known.shown
-        return applied(spline, factor, inputs.destination, inputs.components, inputs.blend)
+        settings = inputs.settings
+        return applied(spline, factor, inputs.destination, settings.components, settings.blend)
 
     def _spline(self, inputs: WarpInputs) -> tuple[SourceFactor, Spline]:
         factor = None
         for known in (self._moving, self._last):
             if known is None or known.factor is None:
                 continue
-            if (known.inputs.source, known.inputs.planar) == (inputs.source, inputs.planar):
+            if _factorises_the_same(known.inputs, inputs):
                 factor = known.factor
                 if known.spline is not None and _solves_the_same(known.inputs, inputs):
                     return factor, known.spline
+        settings = inputs.settings
         if factor is None:
-            factor = factorise(inputs.source, planar=inputs.planar)
+            factor = factorise(inputs.source, planar=settings.planar)
             self.factorisations += 1
         self.solves += 1
-        return factor, solve(factor, inputs.destination, inputs.penalty, inputs.convention)
+        return factor, solve(factor, inputs.destination, settings.penalty, settings.convention)
 
     def _unless_kept(
         self,
@@ -278,12 +265,14 @@ class WarpSolver:
         if last is None or last.spline is None:
             return None
         was = last.inputs
-        if not (was.is_whole and inputs.is_whole):
+        now = inputs.settings
+        if not now.is_whole or was.source != inputs.source:
             return None
-        if (was.source, was.planar) != (inputs.source, inputs.planar):
+        # Nothing but the penalty may differ: whatever else is set, now or in times to come.
+        if replace(was.settings, penalty=now.penalty) != now:
             return None
         if was.destination == inputs.destination:
-            if inputs.convention is PenaltyConvention.REGULARISING:
+            if now.convention is PenaltyConvention.REGULARISING:
                 return self._swept(inputs, factor, mesh)
             return None
         moved = [
@@ -291,19 +280,18 @@ class WarpSolver:
             for row, (a, b) in enumerate(zip(was.destination, inputs.destination, strict=True))
             if a != b
         ]
-        same_penalty = (was.penalty, was.convention) == (inputs.penalty, inputs.convention)
-        if len(moved) != 1 or not same_penalty or not can_follow(factor):
+        if len(moved) != 1 or was.settings != now or not can_follow(factor):
             return None
         return self._followed(inputs, last.spline, factor, mesh, moved[0])
 
     def _swept(self, inputs: WarpInputs, factor: SourceFactor, mesh: Mesh) -> NDArray[np.float32]:
-        key = (inputs.source, inputs.planar, inputs.destination, id(mesh))
+        key = (replace(inputs.settings, penalty=0.0), inputs.source, inputs.destination, id(mesh))
         if self._sweep is None or self._sweep[0] != key:
             # Free the old basis before the new one is made: each may be 100 MB.
             self._sweep = self._influence = None
             points = self._preview_points(mesh)
             self._sweep = (key, PenaltySweep(factor, inputs.destination, points))
-        return self._sweep[1].at(inputs.penalty)
+        return self._sweep[1].at(inputs.settings.penalty)
 
     def _followed(
         self, inputs: WarpInputs, spline: Spline, factor: SourceFactor, mesh: Mesh, row: int
@@ -329,5 +317,11 @@ def is_rounding(length: float, place: Position) -> bool:
     return length < ROUNDING * max(*map(abs, place), 1e-300)
 
 
+def _factorises_the_same(a: WarpInputs, b: WarpInputs) -> bool:
+    return (a.source, a.settings.planar) == (b.source, b.settings.planar)
+
+
 def _solves_the_same(a: WarpInputs, b: WarpInputs) -> bool:
-    return (a.destination, a.penalty, a.convention) == (b.destination, b.penalty, b.convention)
+    """Whether two warps are one, of which more or less is applied."""
+    wholes = [replace(x.settings, components=Components.FULL, blend=1.0) for x in (a, b)]
+    return a.destination == b.destination and wholes[0] == wholes[1]
