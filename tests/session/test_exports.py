@@ -166,7 +166,8 @@ def test_the_coefficients_are_those_of_the_exported_mesh(sample, components):
     coefficients = session_coefficients(session)
     evaluated = coefficients.spline.evaluate(session.mesh(Side.SOURCE).vertices)
     assert np.array_equal(evaluated, warped_mesh(session).vertices)
-    assert (coefficients.components, coefficients.blend) == (components.value, 0.75)
+    assert coefficients.settings == session.settings
+    assert (session.settings.components, session.settings.blend) == (components, 0.75)
     assert coefficients.source_sha256 == session.source.sha256
     assert coefficients.version == pinwarp.__version__
 
