@@ -21,15 +21,14 @@ from pinwarp.io.manifest import Subject
 from pinwarp.io.meshes import read_mesh, write_mesh
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
-from pinwarp.session.judging.quality import quality_of
 from pinwarp.session.judging.report import report_of
-from pinwarp.session.judging.survey import Surveyor
 from pinwarp.session.keeping.files import read_session, write_session
 from pinwarp.session.outputs.exports import session_coefficients, warped_mesh
 from pinwarp.session.outputs.script import script_of
 from pinwarp.session.session import Session
 from pinwarp.session.study.subject import Task, made_from
 from pinwarp.session.warp.setting_words import settings_in_words
+from pinwarp.session.warp.solved import solved
 from pinwarp.session.warp.solver import WarpInputs, WarpSolver
 
 FIELDS = [field.name for field in dataclasses.fields(WarpSettings)]
@@ -160,11 +159,8 @@ def test_a_batch_does_a_subject_again_when_the_setting_changes(tmp_path, session
 @each
 def test_a_report_tells_the_setting(session, name):
     def facts(settings: WarpSettings) -> tuple[tuple[str, str], ...]:
-        changed = given(session, settings)
-        result = WarpSolver().solve(WarpInputs.of(changed))
-        survey = Surveyor().survey(result, None, None)
-        made = datetime(2026, 11, 22)
-        return report_of("femur", changed, result, quality_of(result), survey, made).facts
+        warp = solved(given(session, settings))
+        return report_of("femur", warp, datetime(2026, 11, 22)).facts
 
     told = settings_in_words(other(name), "mm")
     assert told != settings_in_words(BASE, "mm")

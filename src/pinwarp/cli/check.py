@@ -12,6 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from pinwarp.cli.options import SessionFile
+from pinwarp.core.findings import Severity
 from pinwarp.io.setting_keys import plain_settings
 from pinwarp.session.judging import check as checking
 from pinwarp.session.keeping.files import read_session
@@ -63,7 +64,7 @@ def _print(console: Console, name: str, session: Session, checked: checking.Chec
     pairs = Table("Pair", title=f"{name}: {len(checked.pairs)} pairs, lengths in {unit}")
     for column in ("Residual", "Left out", "Standardised"):
         pairs.add_column(column, justify="right")
-    named = {name for x in checked.findings if checking.is_flagged(x.finding) for name in x.names}
+    named = {name for x in checked.findings if x.severity is Severity.WRONG for name in x.names}
     lengths = [x for pair in checked.pairs for x in (pair.residual, pair.leave_one_out)]
     decimals = _decimals(max((x for x in lengths if not math.isnan(x)), default=0.0))
     for pair in checked.pairs:
@@ -79,7 +80,7 @@ def _print(console: Console, name: str, session: Session, checked: checking.Chec
     for label, words in _figures(session, checked):
         console.print(f"{label:<22}{words}", markup=False, highlight=False)
     for found in checked.findings:
-        mark = "!" if checking.is_flagged(found.finding) else "-"
+        mark = "!" if found.severity is Severity.WRONG else "-"
         console.print(f"{mark} {found.sentence}", markup=False, highlight=False)
     for note in checked.notes:
         console.print(f"- {note}", markup=False, highlight=False)

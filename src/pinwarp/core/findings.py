@@ -3,13 +3,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
+from enum import IntEnum, StrEnum
+from typing import Protocol, TypeVar
+
+
+class Severity(IntEnum):
+    """How bad a finding is.
+
+    Something ``WRONG`` should be put right before the warp is used; a ``WARNING`` says that it may
+    be; a ``REMARK`` is only worth knowing.
+    """
+
+    REMARK = 0
+    WARNING = 1
+    WRONG = 2
 
 
 class FindingKind(StrEnum):
-    """What was noticed."""
+    """What was noticed.
+
+    Examples
+    --------
+    >>> FindingKind.FOLD.severity.name, FindingKind.POLE.severity.name
+    ('WRONG', 'WARNING')
+    """
 
     CONFLICT = "conflict"
     CLOSE = "close"
@@ -21,6 +40,17 @@ class FindingKind(StrEnum):
     ISOLATED = "isolated"
     SWAPPED = "swapped"
     MIRRORED = "mirrored"
+
+    @property
+    def severity(self) -> Severity:
+        """How bad it is: what lists, marks, their order and strict checks go by."""
+        match self:
+            case FindingKind.ISOLATED:
+                return Severity.REMARK
+            case FindingKind.CLOSE | FindingKind.NEARLY_PLANAR | FindingKind.POLE:
+                return Severity.WARNING
+            case _:
+                return Severity.WRONG
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,9 +82,14 @@ class Finding:
     others: tuple[float, ...] = ()
 
     @property
+    def severity(self) -> Severity:
+        """How bad it is."""
+        return self.kind.severity
+
+    @property
     def is_grave(self) -> bool:
-        """Whether something may be wrong: an isolated landmark is only far from the others."""
-        return self.kind is not FindingKind.ISOLATED
+        """Whether something is or may be wrong."""
+        return self.severity > Severity.REMARK
 
     def describe(self, names: Sequence[str] | None = None, unit: str = "") -> str:
         """Say it in a sentence.
@@ -120,6 +155,26 @@ class Finding:
                     "The destination looks like a mirror image of the source: "
                     "are they a left and a right bone?"
                 )
+
+
+class _Judged(Protocol):
+    @property
+    def severity(self) -> Severity: ...
+
+
+_Found = TypeVar("_Found", bound=_Judged)
+
+
+def gravest_first(found: Iterable[_Found]) -> tuple[_Found, ...]:
+    """Sort findings by their severity; those of one severity keep their order.
+
+    Examples
+    --------
+    >>> kinds = [FindingKind.ISOLATED, FindingKind.CLOSE, FindingKind.SUSPECT, FindingKind.FOLD]
+    >>> [one.kind.value for one in gravest_first(Finding(kind, (), 1.0) for kind in kinds)]
+    ['suspect', 'fold', 'close', 'isolated']
+    """
+    return tuple(sorted(found, key=lambda one: -one.severity))
 
 
 def _listed(words: Sequence[str]) -> str:

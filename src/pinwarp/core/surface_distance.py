@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import KDTree
 
 from pinwarp.core import kernel
+from pinwarp.core.lengths import rms
 from pinwarp.core.mesh import Mesh
 
 Matrix = NDArray[np.float64]
@@ -260,7 +261,7 @@ class DistanceFigures:
         values = np.asarray(distances, dtype=np.float64)
         return cls(
             mean=float(values.mean()),
-            rms=float(np.sqrt(np.mean(values * values))),
+            rms=rms(values),
             percentile_95=float(np.percentile(values, 95)),
             maximum=float(values.max()),
         )

@@ -19,8 +19,8 @@ from pinwarp.gui.exporting.offscreen import Offscreen, Pixels
 from pinwarp.gui.style import theme
 from pinwarp.gui.tasks.stepped_job import Steps
 from pinwarp.gui.views.canvas import Canvas
-from pinwarp.session.outputs.exports import solved
 from pinwarp.session.session import Session
+from pinwarp.session.warp.solved import solved
 
 Vertices = NDArray[np.float32]
 
@@ -102,7 +102,7 @@ def ends_of(session: Session) -> Ends:
         )
     warp, part = solved(session), as_drawn(session.settings.components)
     aligned, warped = (
-        warp.applied(part, blend).evaluate(mesh.vertices).astype(np.float32) for blend in (0, 1)
+        warp.part(part, blend).evaluate(mesh.vertices).astype(np.float32) for blend in (0, 1)
     )
     return Ends(aligned, warped)
 

@@ -25,6 +25,7 @@ from pinwarp.session.outputs.exports import (
 from pinwarp.session.outputs.script import script_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.component_words import applied_in_words
+from pinwarp.session.warp.solved import solved
 
 
 class Exports:
@@ -132,11 +133,11 @@ class Exports:
 
         def write(progress: Progress) -> None:
             progress(0.05, "warping")
-            mesh, data = warped_mesh(session), NO_DATA
+            warp = solved(session)
+            mesh, data = warped_mesh(warp), NO_DATA
             if suffix in NORMALS_SUFFIXES:
                 data = warped_mesh_data(
-                    session,
-                    mesh,
+                    warp,
                     scalars=suffix in SCALARS_SUFFIXES,
                     progress=lambda share, stage: progress(0.1 + 0.7 * share, stage),
                 )

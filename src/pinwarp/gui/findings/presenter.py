@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from qtpy.QtGui import QAction
 
-from pinwarp.core.findings import FindingKind
+from pinwarp.core.findings import FindingKind, gravest_first
 from pinwarp.core.landmarks import Role
 from pinwarp.core.mirror import axis_to_mirror
 from pinwarp.gui.maps.presenter import MapPresenter
@@ -110,8 +110,8 @@ class FindingsPresenter:
         found = quality.findings_in(session) if quality is not None else ()
         if survey is not None:
             found += named_findings(survey.findings, survey.result.inputs, session)
-        # A stable sort: folds come behind what causes them, what is only isolated last.
-        found = tuple(sorted(found, key=lambda one: not one.finding.is_grave))
+        # Folds come behind what causes them, what is only isolated last.
+        found = gravest_first(found)
         self._found = tuple(one for one in found if one.finding.kind not in _TOLD_ELSEWHERE)
         self._model.show_findings(self._found)
         self._panel.findings.show_findings(self._found, self._mirror_axis(quality))

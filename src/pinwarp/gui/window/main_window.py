@@ -127,7 +127,11 @@ class MainWindow(WindowFrame):
         self._pictures = PictureExport(self.editor, self._tasks, self.viewports, self)
         self._file_warping = FileWarping(self.editor, self._tasks)
         self._report_export = ReportExport(
-            self.editor, self._tasks, self.viewports, lambda: session_name(self.editor.path)
+            self.editor,
+            self._tasks,
+            self.viewports,
+            lambda: session_name(self.editor.path),
+            lambda: (self.presenter.result, self.quality.quality),
         )
         self.guidance = Guidance(
             self.editor, self.presenter, self._tasks, self.guide_bar, self.hint

@@ -10,12 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinwarp.core.components import Components
+from pinwarp.core.lengths import rounding_among
 from pinwarp.io.csv_text import csv_line
-from pinwarp.session.judging.quality import Quality
+from pinwarp.session.judging.quality import LEAST_PAIRS, Quality
 from pinwarp.session.warp.component_words import COMPONENT_WORDS
 
-# Shorter than this share of the coordinates, a length is rounding.
-ROUNDING = 1e-9
 _SIGNIFICANT = 4
 
 _OPEN_DIRECTIONS = {
@@ -68,7 +67,7 @@ def determined_in_words(quality: Quality | None) -> str:
         return "No pair yet: place a landmark on both bones to see what the warp does."
     if quality.rank < 3:
         return f"{_OPEN_DIRECTIONS[quality.rank]} Four pairs that span space determine the rest."
-    if len(quality.inputs.source) < 5:
+    if len(quality.inputs.source) < LEAST_PAIRS:
         return "Four pairs are met by an affine map: the warp bends from five pairs on."
     return ""
 
@@ -176,7 +175,7 @@ def figures_table(quality: Quality, unit: str) -> str:
 def _noise(quality: Quality) -> float:
     """Return the length below which there is only rounding."""
     inputs = quality.inputs
-    return ROUNDING * float(np.abs([inputs.source, inputs.destination]).max(initial=0.0))
+    return rounding_among(inputs.source, inputs.destination)
 
 
 def _figures(

@@ -17,9 +17,9 @@ from pinwarp.core.spline import Spline
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES, read_landmarks
 from pinwarp.io.meshes import MESH_SUFFIXES, read_mesh, write_mesh
 from pinwarp.session.importing.conversion import frame_notes, write_in_frame
-from pinwarp.session.outputs.exports import session_spline
 from pinwarp.session.outputs.replacing import refuse_to_replace
 from pinwarp.session.session import Session
+from pinwarp.session.warp.solved import solved
 
 WARPED = "_warped"
 
@@ -95,7 +95,7 @@ class FileWarper:
 
     def __init__(self, session: Session) -> None:
         self._unit = session.unit
-        self._spline: Spline = session_spline(session)
+        self._spline: Spline = solved(session).applied
         self._axes = "" if session.source is None else session.source.mirrored
         self._scale = 1.0 if session.source is None else session.source.scaled
         self._mesh = session.mesh(Side.SOURCE)

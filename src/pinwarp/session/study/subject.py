@@ -20,6 +20,7 @@ from pinwarp.session.importing.conversion import frame_notes
 from pinwarp.session.judging.check import Check, check
 from pinwarp.session.outputs.exports import warped_mesh, warped_passengers
 from pinwarp.session.session import Session, as_seen
+from pinwarp.session.warp.solved import solved
 from pinwarp.version import __version__
 
 # So many names are told, the others counted.
@@ -116,10 +117,11 @@ def _warp(task: Task) -> tuple[Check, tuple[str, ...]]:
         session = session.with_mesh(Side.SOURCE, _source(task.session.source))
     if subject.destination_mesh is not None:
         session = session.with_mesh(Side.DESTINATION, read_mesh(subject.destination_mesh))
-    checked = check(session)
-    write_mesh(task.mesh, warped_mesh(session))
+    warp = solved(session)
+    checked = check(warp)
+    write_mesh(task.mesh, warped_mesh(warp))
     if task.passengers is not None:
-        write_landmarks(task.passengers, warped_passengers(session), Side.DESTINATION)
+        write_landmarks(task.passengers, warped_passengers(warp), Side.DESTINATION)
     return checked, notes
 
 

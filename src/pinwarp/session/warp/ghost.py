@@ -12,7 +12,7 @@ from pinwarp.core.spline import PenaltyConvention
 from pinwarp.session.warp.solver import WarpResult
 
 # With fewer pairs a prediction says more about the pairs than about the bone.
-LEAST_PAIRS = 3
+FEWEST_PAIRS = 3
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ def ghost_of(landmark: Landmark | None, side: Side, result: WarpResult) -> Ghost
     if landmark is None or landmark.position(side) is not None or factor is None or spline is None:
         return None
     known = landmark.position(side.other)
-    if known is None or len(factor.source) < LEAST_PAIRS:
+    if known is None or len(factor.source) < FEWEST_PAIRS:
         return None
     if side is Side.DESTINATION:
         source = np.array([known])

@@ -12,6 +12,7 @@ from pinwarp.core.components import Components, applied
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.factor import SourceFactor, factorise
 from pinwarp.core.landmarks import Position, Side
+from pinwarp.core.lengths import rms, rounding_among
 from pinwarp.core.live import Influence, PenaltySweep, PreviewPoints, can_follow, preview
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.settings import WarpSettings
@@ -20,8 +21,6 @@ from pinwarp.session.session import Session
 
 Matrix = NDArray[np.float64]
 
-# Residuals below this share of the largest coordinate are 0.
-ROUNDING = 1e-9
 # Up to here the eigendecomposition is done along with the solve; above, once the hand rests.
 EAGER_MODES = 300
 
@@ -101,9 +100,7 @@ class WarpResult:
     @property
     def rms_residual(self) -> float | None:
         """Root mean square of the residuals, in mesh units."""
-        if self.residuals is None:
-            return None
-        return float(np.sqrt(np.mean(self.residuals**2)))
+        return None if self.residuals is None else rms(self.residuals)
 
     @property
     def flexibility(self) -> float | None:
@@ -141,7 +138,7 @@ class WarpSolver:
             return last
         # A new state of rest: the shortcuts from the old one are of no more use.
         self._influence = None
-        result = self._solve_landmarks(inputs)
+        result = self.solve_landmarks(inputs)
         if result.factor is not None and result.shown is not None:
             if len(inputs.source) <= EAGER_MODES:
                 _ = result.factor.modes
@@ -164,7 +161,7 @@ class WarpSolver:
         Compared with the last state of rest, a changed penalty is swept, one changed destination
         is followed, anything else is evaluated directly. Only the stand-in is warped, if there is.
         """
-        result = self._solve_landmarks(inputs)
+        result = self.solve_landmarks(inputs)
         self._moving = result
         mesh = inputs.stand_in or inputs.mesh
         if result.factor is None or result.shown is None or mesh is None:
@@ -182,7 +179,7 @@ class WarpSolver:
             _ = result.factor.modes
         return result
 
-    def _solve_landmarks(self, inputs: WarpInputs) -> WarpResult:
+    def solve_landmarks(self, inputs: WarpInputs) -> WarpResult:
         """Solve, without warping any mesh."""
         if not inputs.source:
             return WarpResult(inputs)
@@ -196,7 +193,7 @@ class WarpSolver:
         landmarks = shown.evaluate(source)
         residuals = np.linalg.norm(landmarks - destination, axis=1)
         # What is only rounding must not sort rows or draw bars.
-        residuals[residuals < ROUNDING * np.abs(destination).max()] = 0.0
+        residuals[residuals < rounding_among(destination)] = 0.0
         return WarpResult(
             inputs=inputs,
             factor=factor,
@@ -314,7 +311,7 @@ def is_rounding(length: float, place: Position) -> bool:
     >>> is_rounding(1e-12, (0.0, 40.0, 3.0)), is_rounding(1e-3, (0.0, 40.0, 3.0))
     (True, False)
     """
-    return length < ROUNDING * max(*map(abs, place), 1e-300)
+    return length < max(rounding_among(place), 1e-300)
 
 
 def _factorises_the_same(a: WarpInputs, b: WarpInputs) -> bool:
