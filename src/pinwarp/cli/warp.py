@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from pinwarp.cli.options import Applied, Blend, Force, Penalty, SessionFile, with_options
-from pinwarp.cli.telling import BAD_USAGE, progress_bar, tell_error, tell_notes
+from pinwarp.cli.telling import BAD_USAGE, progress_bar, refuse_existing, tell_error, tell_notes
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.session.keeping.files import read_session, with_meshes
@@ -49,7 +49,8 @@ def warp(
         raise PinwarpError(f"{session.name} has no source mesh: name the files to warp.")
     sources = inputs or ([] if opened.source is None else [opened.source.path])
     files = [file.path for file in (opened.source, opened.destination) if file is not None]
-    outputs = outputs_of(sources, out, kept=[session, *files], force=force)
+    outputs = outputs_of(sources, out, kept=[session, *files])
+    refuse_existing(outputs, force)
     if opened.source is not None and (axes := opened.source.mirrored):
         opened = with_meshes(opened, [Side.SOURCE], session.absolute().parent)
         tell_notes([f"The session mirrors its source ({axes}): so are the inputs."])

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from enum import IntEnum, StrEnum
 from typing import Protocol, TypeVar
 
+from pinwarp.core.words import listed
+
 
 class Severity(IntEnum):
     """How bad a finding is.
@@ -106,7 +108,7 @@ class Finding:
         >>> Finding(FindingKind.CONFLICT, (0, 1), 2.5).describe(["apex", "tip"], "mm")
         'apex and tip lie at the same place on the source but 2.5 mm apart on the destination.'
         """
-        who = _listed([names[row] if names else f"landmark {row}" for row in self.rows])
+        who = listed([names[row] if names else f"landmark {row}" for row in self.rows])
         length = f"{self.value:.4g} {unit}".rstrip()
         other = f"{self.others[0]:.3g} {unit}".rstrip() if self.others else ""
         match self.kind:
@@ -175,11 +177,6 @@ def gravest_first(found: Iterable[_Found]) -> tuple[_Found, ...]:
     ['suspect', 'fold', 'close', 'isolated']
     """
     return tuple(sorted(found, key=lambda one: -one.severity))
-
-
-def _listed(words: Sequence[str]) -> str:
-    """Say one or several."""
-    return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
 
 
 def _round_down(value: float) -> str:

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from pinwarp.core.errors import LandmarkError
+from pinwarp.core.words import counted
 
 NAME_PATTERN = "landmark_{n}"
 PASSENGER_PATTERN = "passenger_{n}"
@@ -119,7 +120,7 @@ def in_words(names: Iterable[str]) -> str:
     ('fovea', '2 landmarks')
     """
     names = list(names)
-    return names[0] if len(names) == 1 else f"{len(names)} landmarks"
+    return names[0] if len(names) == 1 else counted(len(names), "landmark")
 
 
 @functools.lru_cache(maxsize=4096)

@@ -54,13 +54,19 @@ class Exports:
 
     def export_warped(self, *, passengers: bool) -> None:
         """Ask for a file and write where the warp carries the passengers, or the pairs' source."""
+        session = self._editor.committed
         what = "passengers" if passengers else "landmarks"
+        if passengers and not session.passengers:
+            self._tasks.dialogs.tell_error(
+                "Cannot export passengers",
+                "There is no passenger: Ctrl+click on the source adds one.",
+            )
+            return
         proposal = self._tasks.folder() / f"{what}_warped.landmarks.csv"
         path = self._tasks.dialogs.ask_save(f"Export the warped {what}", LANDMARK_FILES, proposal)
         if path is None:
             return
         carried = warped_passengers if passengers else warped_landmarks
-        session = self._editor.committed
         applied = applied_in_words(session.settings)
         self._write(path, lambda: carried(session), Side.DESTINATION, applied)
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError, PinwarpError, words_of
 from pinwarp.core.landmarks import Landmark, Role, Side
+from pinwarp.core.words import counted, some_of
 from pinwarp.io.landmark_files import LandmarkReading, read_landmarks, write_landmarks
 from pinwarp.io.manifest import Subject
 from pinwarp.io.meshes import MeshFile, read_mesh, write_mesh
@@ -22,9 +23,6 @@ from pinwarp.session.outputs.exports import warped_mesh, warped_passengers
 from pinwarp.session.session import Session, as_seen
 from pinwarp.session.warp.solved import solved
 from pinwarp.version import __version__
-
-# So many names are told, the others counted.
-NAMED = 3
 
 
 @dataclass(frozen=True)
@@ -181,25 +179,20 @@ def with_destinations(
         raise FileFormatError(
             path,
             "None of its names is that of a landmark on the source. "
-            f"It has {_some(list(reading.names))}; the source has {_some(missing)}.",
+            f"It has {some_of(list(reading.names))}; the source has {some_of(missing)}.",
         )
     notes = [*reading.notes, *frame_notes(reading, session.unit)]
     if missing:
-        notes.append(f"{_landmarks(missing)} not in {path.name}: {_some(missing)}.")
+        notes.append(f"{_are(missing)} not in {path.name}: {some_of(missing)}.")
     if placed:
         unknown = list(placed)
-        notes.append(f"{_landmarks(unknown)} not on the source: {_some(unknown)}.")
+        notes.append(f"{_are(unknown)} not on the source: {some_of(unknown)}.")
     notes += [f"{path.name}, line {x.line} was skipped: {x.reason}." for x in reading.skipped]
     return session, tuple(notes)
 
 
-def _landmarks(names: Sequence[str]) -> str:
-    return "1 landmark is" if len(names) == 1 else f"{len(names)} landmarks are"
-
-
-def _some(names: Sequence[str]) -> str:
-    told = ", ".join(names[:NAMED])
-    return f"{told} and {len(names) - NAMED} more" if len(names) > NAMED else told
+def _are(names: Sequence[str]) -> str:
+    return f"{counted(len(names), 'landmark')} {'is' if len(names) == 1 else 'are'}"
 
 
 def made_from(task: Task) -> str:
