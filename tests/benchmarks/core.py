@@ -17,6 +17,7 @@ from pinwarp.core.factor import factorise
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.core.live import PreviewPoints, preview
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import solve
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session import edits
@@ -97,7 +98,7 @@ def session_of(vertices: int, count: int) -> Session:
         for i, (u, v) in enumerate(zip(source.tolist(), destination.tolist(), strict=True))
     )
     file = MeshFile(Path("/benchmark.ply"), mesh, "", ())
-    return Session(file, landmarks=landmarks, warping_penalty=1.0)
+    return Session(file, landmarks=landmarks, settings=WarpSettings(1.0))
 
 
 class Hand:

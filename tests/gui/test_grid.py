@@ -17,7 +17,7 @@ from tests.gui.test_warp_panel import (
 from pinwarp.core.components import applied
 from pinwarp.core.landmarks import positions
 from pinwarp.gui.scene.camera_pose import Pose
-from pinwarp.session.editor import GridKind
+from pinwarp.session.view import GridKind
 
 
 def grid(user, side):
@@ -29,7 +29,7 @@ def bent(user):
     session = user.session
     factor, spline = warp_of(session)
     target = positions(session.pairs, DESTINATION)
-    shown = applied(spline, factor, target, session.components, session.blend)
+    shown = applied(spline, factor, target, session.settings.components, session.settings.blend)
     lines = grid(user, SOURCE)
     return shown.evaluate(lines.reshape(-1, 3)).reshape(lines.shape)
 
@@ -109,11 +109,11 @@ def test_the_grid_follows_penalty_and_blend(user):
     user.trigger("grid_box")
     slider = user.window.parts.penalty.panel.slider
     slide(user, slider, slider.maximum() // 2)
-    assert user.session.warping_penalty > 0
+    assert user.session.settings.penalty > 0
     assert np.allclose(grid(user, DESTINATION), bent(user), atol=1e-3)
     show_panel(user)
     slide(user, user.window.parts.warp.panel.blend, 40, release=False)
-    assert user.session.blend == pytest.approx(0.4)
+    assert user.session.settings.blend == pytest.approx(0.4)
     assert np.allclose(grid(user, DESTINATION), bent(user), atol=1e-3)
 
 

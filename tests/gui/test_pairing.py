@@ -68,7 +68,7 @@ def test_five_clicked_pairs_and_the_slider_survive_saving_and_reopening(
     assert slider.isEnabled()
     middle = slider.rect().center()
     user.drag(slider, QPoint(8, middle.y()), middle)
-    assert user.session.warping_penalty > 0
+    assert user.session.settings.penalty > 0
     assert user.editor.undo_label == "Change penalty"
     path = tmp_path / "clicked.pinwarp.csv"
     user.dialogs.saves = [path]
@@ -80,7 +80,7 @@ def test_five_clicked_pairs_and_the_slider_survive_saving_and_reopening(
     user.dialogs.opens = [path]
     user.trigger("open_session")
     assert user.session.landmarks == saved.landmarks
-    assert user.session.warping_penalty == saved.warping_penalty
+    assert user.session.settings.penalty == saved.settings.penalty
     assert user.session.source.path == saved.source.path
     assert np.allclose(user.window.viewports[DESTINATION].overlay_points, overlay)
 

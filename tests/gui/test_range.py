@@ -9,7 +9,7 @@ from pinwarp.core.landmarks import Side
 from pinwarp.core.maps import MapKind
 from pinwarp.io.meshes import write_mesh
 from pinwarp.session import edits
-from pinwarp.session.editor import GridKind
+from pinwarp.session.view import GridKind
 
 
 def test_a_landmark_beyond_all_numbers_is_said_and_undone(user):

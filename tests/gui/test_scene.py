@@ -6,8 +6,8 @@ import numpy as np
 
 from pinwarp.core.landmarks import Landmark, Role, Side
 from pinwarp.gui.scene.scene import scene_of
-from pinwarp.session.editor import Selection, ViewState
 from pinwarp.session.session import Session
+from pinwarp.session.view import Selection, ViewState
 from pinwarp.session.warp.solver import WarpInputs, WarpSolver
 
 

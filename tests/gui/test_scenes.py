@@ -14,7 +14,7 @@ from pinwarp.gui.scene.drawables import Badge, Bone, Drawable, GridLines, Hint, 
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.views.scenes import Scenes
 from pinwarp.session import edits
-from pinwarp.session.editor import GridKind
+from pinwarp.session.view import GridKind
 
 SOURCE, DESTINATION = Side
 

@@ -20,7 +20,7 @@ from pinwarp.io.mesh_formats.ply import write_ply
 from pinwarp.io.meshes import read_mesh
 from pinwarp.io.samples import assets_folder
 from pinwarp.session import edits
-from pinwarp.session.editor import LinkMode
+from pinwarp.session.view import LinkMode
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
 # The destination lies on its back in another corner of the room, a tenth larger, in metres.

@@ -86,7 +86,7 @@ def aligned_source(user):
 
 def warp_of(session):
     factor = factorise(positions(session.pairs, SOURCE))
-    return factor, solve(factor, positions(session.pairs, DESTINATION), session.warping_penalty)
+    return factor, solve(factor, positions(session.pairs, DESTINATION), session.settings.penalty)
 
 
 # The panel
@@ -119,7 +119,7 @@ def test_nothing_is_cut_off_in_a_small_window(user, panel, unit):
 def test_a_click_on_a_part_applies_it_to_screen_and_export_and_can_be_undone(user, panel, tmp_path):
     whole = overlay(user)
     choose(user, panel, Components.RIGID)
-    assert user.session.components is Components.RIGID
+    assert user.session.settings.components is Components.RIGID
     expected = aligned_source(user)
     assert np.allclose(overlay(user), expected, atol=1e-3)
     assert np.allclose(exported(user, tmp_path), expected)
@@ -137,7 +137,7 @@ def test_the_menu_and_the_arrow_keys_choose_as_well(user, panel):
     assert button.isChecked()
     button.setFocus()
     user.press(Qt.Key.Key_Down, widget=button)
-    assert user.session.components is Components.SIMILARITY
+    assert user.session.settings.components is Components.SIMILARITY
 
 
 def test_each_part_says_what_it_leaves_between_the_pairs(user, panel):
@@ -167,7 +167,7 @@ def test_the_blend_is_seen_while_it_is_dragged_and_is_one_step_to_undo(user, pan
     assert panel.blend_value.text() == "50%"
     assert np.allclose(overlay(user), half_way, atol=1e-3)
     assert user.editor.undo_label == label
-    assert user.editor.committed.blend == 1
+    assert user.editor.committed.settings.blend == 1
     QTest.mouseRelease(panel.blend, LEFT, pos=handle_at(panel.blend, 50))
     user.settle()
     assert user.editor.undo_label == "Blend 50%"
@@ -184,10 +184,10 @@ def test_steps_of_the_keyboard_are_one_step_to_undo(user, panel):
     panel.blend.setFocus()
     for _ in range(3):
         user.press(Qt.Key.Key_Left, widget=panel.blend)
-    assert user.session.blend == pytest.approx(0.97)
+    assert user.session.settings.blend == pytest.approx(0.97)
     assert user.editor.undo_label == "Blend 97%"
     user.trigger("undo")
-    assert user.session.blend == 1
+    assert user.session.settings.blend == 1
 
 
 def test_a_drag_after_the_keyboard_is_a_step_of_its_own(user, panel):
@@ -195,7 +195,7 @@ def test_a_drag_after_the_keyboard_is_a_step_of_its_own(user, panel):
     user.press(Qt.Key.Key_PageDown, widget=panel.blend)
     slide(user, panel.blend, 20)
     user.trigger("undo")
-    assert user.session.blend == pytest.approx(0.9)
+    assert user.session.settings.blend == pytest.approx(0.9)
 
 
 def test_the_blend_goes_to_what_is_applied(user, panel):
@@ -213,7 +213,7 @@ def test_playing_goes_there_and_back_and_leaves_no_trace(user, panel):
     seen = []
 
     def remember(session):
-        seen.append(session.blend)
+        seen.append(session.settings.blend)
 
     user.editor.session_changed.connect(remember)
     QTest.mouseClick(panel.play, LEFT)
@@ -235,7 +235,7 @@ def test_playing_goes_there_and_back_and_leaves_no_trace(user, panel):
 def play(user):
     user.window.viewports[SOURCE].setFocus()
     QTest.keyClick(user.window, Qt.Key.Key_B, Qt.KeyboardModifier.ShiftModifier)
-    user.qtbot.waitUntil(lambda: 0 < user.session.blend < 1, timeout=10_000)
+    user.qtbot.waitUntil(lambda: 0 < user.session.settings.blend < 1, timeout=10_000)
     assert user.editor.is_previewing
 
 
@@ -270,8 +270,8 @@ def test_what_is_done_meanwhile_stops_playing_and_stays(user, panel):
     play(user)
     user.trigger("apply_affine")
     assert not user.window.parts.warp.player.is_playing
-    assert user.session.components is Components.AFFINE
-    assert user.session.blend == 1
+    assert user.session.settings.components is Components.AFFINE
+    assert user.session.settings.blend == 1
 
 
 def test_a_dialog_stops_playing(user, panel):

@@ -213,7 +213,7 @@ def test_a_preview_leaves_no_step_and_a_cancelled_one_no_trace():
     before = editor.session
     for penalty in (1.0, 2.0, 3.0):
         editor.preview(edits.set_penalty(editor.committed, penalty))
-    assert editor.session.warping_penalty == 3.0
+    assert editor.session.settings.penalty == 3.0
     assert editor.undo_label is None
     editor.cancel_preview()
     assert editor.session == before
@@ -225,7 +225,7 @@ def test_a_drag_of_many_previews_is_one_step():
         editor.preview(edits.set_penalty(editor.committed, penalty))
     editor.commit(editor.session, "Change penalty")
     editor.undo()
-    assert editor.session.warping_penalty == 0.0
+    assert editor.session.settings.penalty == 0.0
     assert editor.undo_label is None
 
 

@@ -12,6 +12,7 @@ from pinwarp.core.components import Components
 from pinwarp.core.factor import factorise
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import PenaltyConvention, solve
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session import edits
@@ -28,7 +29,8 @@ def session():
     )
     vertices = rng.normal(size=(400, 3))
     mesh = Mesh(vertices, np.arange(399).reshape(-1, 3))
-    return Session(MeshFile(Path("/m.ply"), mesh, "", ()), landmarks=landmarks, warping_penalty=0.2)
+    file = MeshFile(Path("/m.ply"), mesh, "", ())
+    return Session(file, landmarks=landmarks, settings=WarpSettings(0.2))
 
 
 def exact(session):
@@ -36,8 +38,8 @@ def exact(session):
     spline = solve(
         factorise([pair.source for pair in pairs]),
         [pair.destination for pair in pairs],
-        session.warping_penalty,
-        session.convention,
+        session.settings.penalty,
+        session.settings.convention,
     )
     return spline.evaluate(session.mesh(Side.SOURCE).vertices)
 

@@ -3,16 +3,38 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
+from enum import IntEnum, StrEnum
+from typing import Protocol, TypeVar
+
+from pinwarp.core.words import listed
+
+
+class Severity(IntEnum):
+    """How bad a finding is.
+
+    Something ``WRONG`` should be put right before the warp is used; a ``WARNING`` says that it may
+    be; a ``REMARK`` is only worth knowing.
+    """
+
+    REMARK = 0
+    WARNING = 1
+    WRONG = 2
+
 
 # Of more landmarks than this a sentence names the first, and says how many more there are.
 MOST_NAMED = 4
 
 
 class FindingKind(StrEnum):
-    """What was noticed."""
+    """What was noticed.
+
+    Examples
+    --------
+    >>> FindingKind.FOLD.severity.name, FindingKind.POLE.severity.name
+    ('WRONG', 'WARNING')
+    """
 
     CONFLICT = "conflict"
     CLOSE = "close"
@@ -24,6 +46,17 @@ class FindingKind(StrEnum):
     ISOLATED = "isolated"
     SWAPPED = "swapped"
     MIRRORED = "mirrored"
+
+    @property
+    def severity(self) -> Severity:
+        """How bad it is: what lists, marks, their order and strict checks go by."""
+        match self:
+            case FindingKind.ISOLATED:
+                return Severity.REMARK
+            case FindingKind.CLOSE | FindingKind.NEARLY_PLANAR | FindingKind.POLE:
+                return Severity.WARNING
+            case _:
+                return Severity.WRONG
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,9 +88,14 @@ class Finding:
     others: tuple[float, ...] = ()
 
     @property
+    def severity(self) -> Severity:
+        """How bad it is."""
+        return self.kind.severity
+
+    @property
     def is_grave(self) -> bool:
-        """Whether something may be wrong: an isolated landmark is only far from the others."""
-        return self.kind is not FindingKind.ISOLATED
+        """Whether something is or may be wrong."""
+        return self.severity > Severity.REMARK
 
     def describe(self, names: Sequence[str] | None = None, unit: str = "") -> str:
         """Say it in a sentence.
@@ -74,7 +112,7 @@ class Finding:
         >>> Finding(FindingKind.CONFLICT, (0, 1), 2.5).describe(["apex", "tip"], "mm")
         'apex and tip lie at the same place on the source but 2.5 mm apart on the destination.'
         """
-        who = _listed([names[row] if names else f"landmark {row}" for row in self.rows])
+        who = _who([names[row] if names else f"landmark {row}" for row in self.rows])
         length = f"{self.value:.4g} {unit}".rstrip()
         other = f"{self.others[0]:.3g} {unit}".rstrip() if self.others else ""
         match self.kind:
@@ -127,11 +165,31 @@ class Finding:
                 )
 
 
-def _listed(words: Sequence[str]) -> str:
+def _who(names: Sequence[str]) -> str:
     """Say one or several; of many the first, and how many more."""
-    if len(words) > MOST_NAMED:
-        words = [*words[: MOST_NAMED - 1], f"{len(words) - MOST_NAMED + 1} more"]
-    return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
+    if len(names) > MOST_NAMED:
+        names = [*names[: MOST_NAMED - 1], f"{len(names) - MOST_NAMED + 1} more"]
+    return listed(names)
+
+
+class _Judged(Protocol):
+    @property
+    def severity(self) -> Severity: ...
+
+
+_Found = TypeVar("_Found", bound=_Judged)
+
+
+def gravest_first(found: Iterable[_Found]) -> tuple[_Found, ...]:
+    """Sort findings by their severity; those of one severity keep their order.
+
+    Examples
+    --------
+    >>> kinds = [FindingKind.ISOLATED, FindingKind.CLOSE, FindingKind.SUSPECT, FindingKind.FOLD]
+    >>> [one.kind.value for one in gravest_first(Finding(kind, (), 1.0) for kind in kinds)]
+    ['suspect', 'fold', 'close', 'isolated']
+    """
+    return tuple(sorted(found, key=lambda one: -one.severity))
 
 
 def _round_down(value: float) -> str:

@@ -13,6 +13,7 @@ from scipy.spatial import KDTree
 
 from pinwarp.core import kernel
 from pinwarp.core.errors import RangeError
+from pinwarp.core.lengths import rms
 from pinwarp.core.mesh import Mesh
 
 Matrix = NDArray[np.float64]
@@ -269,7 +270,7 @@ class DistanceFigures:
         values = np.asarray(distances, dtype=np.float64)
         return cls(
             mean=float(values.mean()),
-            rms=float(np.sqrt(np.mean(values * values))),
+            rms=rms(values),
             percentile_95=float(np.percentile(values, 95)),
             maximum=float(values.max()),
         )

@@ -17,7 +17,7 @@ from pinwarp.core.factor import RANK_TOLERANCE, SourceFactor
 from pinwarp.core.findings import Finding, FindingKind
 from pinwarp.core.positions import as_positions, quiet
 from pinwarp.core.quality import ROUNDING, LeaveOneOut, leave_one_out
-from pinwarp.core.spline import check_penalty, displacements, solve
+from pinwarp.core.spline import Spline, check_penalty, displacements, solve
 
 Matrix = NDArray[np.float64]
 
@@ -44,6 +44,7 @@ def suspects(
     penalty: float = 0.0,
     *,
     left_out: LeaveOneOut | None = None,
+    fit: Spline | None = None,
 ) -> tuple[Finding, ...]:
     """Judge every pair by what the others say about it.
 
@@ -57,6 +58,8 @@ def suspects(
         The warping penalty of the regularising convention, in mesh units.
     left_out
         The same pairs' leave-one-out errors at that penalty, where they are known already.
+    fit
+        Their affine fit, where it is.
 
     Returns
     -------
@@ -77,7 +80,7 @@ def suspects(
     """
     result = left_out or leave_one_out(factor, destination, penalty)
     target = np.asarray(destination, dtype=np.float64)
-    linear = solve(factor, target, np.inf).affine[1:]
+    linear = (fit or solve(factor, target, np.inf)).affine[1:]
     apart, ends = cdist(factor.source, factor.source), cdist(target, target)
     # The affine fit knows how the bones differ along each axis, the median cannot be led astray.
     fitted = cdist(factor.source @ linear, factor.source @ linear)

@@ -15,13 +15,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.core.components import Components
-from pinwarp.core.errors import FileFormatError
-from pinwarp.core.spline import PenaltyConvention, Spline
+from pinwarp.core.errors import FileFormatError, PinwarpError
+from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
+from pinwarp.core.spline import Spline
 from pinwarp.io.atomic import atomic_path
 from pinwarp.io.csv_cells import shortened
 from pinwarp.io.json_text import read_json
 from pinwarp.io.reading import read_content
+from pinwarp.io.setting_keys import plain_settings, settings_of
 
 COEFFICIENT_SUFFIXES = (".json", ".npz")
 FORMAT = "pinwarp-coefficients"
@@ -42,8 +43,6 @@ _LARGEST = 64 << 20
 _ARRAYS = ("source_landmarks", "weights", "affine")
 _TEXTS = (
     "unit",
-    "penalty_convention",
-    "components",
     "source_sha256",
     "destination_sha256",
     "source_mirrored",
@@ -80,10 +79,8 @@ class Coefficients:
         Of the landmarks, row by row.
     unit
         Of both meshes.
-    components, blend
-        What of the warp this is; see :func:`pinwarp.core.components.applied`.
-    planar
-        Whether nearly planar landmarks were treated as planar.
+    settings
+        How it was solved, and what of it this is.
     source_sha256, destination_sha256
         The hashes of the mesh files; empty where there was none.
     source_mirrored, destination_mirrored
@@ -97,9 +94,7 @@ class Coefficients:
     spline: Spline
     names: tuple[str, ...]
     unit: str = ""
-    components: str = Components.FULL.value
-    blend: float = 1.0
-    planar: bool = False
+    settings: WarpSettings = USUAL_SETTINGS
     source_sha256: str = ""
     destination_sha256: str = ""
     source_mirrored: str = ""
@@ -170,7 +165,9 @@ def read_coefficients(path: str | Path) -> Coefficients:
     content = read_content(path, what="coefficients", largest=_LARGEST)
     try:
         return _coefficients(read(content.data))
-    except _DAMAGE as error:
+    except FileFormatError:
+        raise
+    except (*_DAMAGE, PinwarpError) as error:
         reason = f"{error.args[0]!r} is missing" if isinstance(error, KeyError) else str(error)
         raise FileFormatError(
             path, f"These are no coefficients of a warp ({reason}). Export them again."
@@ -191,18 +188,13 @@ def _suffix(path: str | Path) -> str:
 def _fields(coefficients: Coefficients) -> dict[str, Any]:
     """Return all that is written, in the order in which a person wants to read it."""
     spline = coefficients.spline
-    penalty = spline.penalty
     return {
         "format": FORMAT,
         "format_version": FORMAT_VERSION,
         "pinwarp": coefficients.version,
         "equation": EQUATION,
         "unit": coefficients.unit,
-        "warping_penalty": penalty,
-        "penalty_convention": spline.convention.value,
-        "components": coefficients.components,
-        "blend": float(coefficients.blend),
-        "planar": coefficients.planar,
+        **plain_settings(coefficients.settings),
         "source_sha256": coefficients.source_sha256,
         "source_scaled": float(coefficients.source_scaled),
         "source_mirrored": coefficients.source_mirrored,
@@ -261,23 +253,19 @@ def _coefficients(fields: Mapping[str, Any]) -> Coefficients:
     rows = {"affine": 4, "source_landmarks": len(names), "weights": len(names)}
     for key, array in arrays.items():
         _check(key, array, rows[key])
-    penalty = float(fields["warping_penalty"])
-    if not penalty >= 0:
-        raise ValueError(f"the penalty is {penalty}")
+    settings = settings_of(fields)
     spline = Spline(
         source=arrays["source_landmarks"],
         weights=arrays["weights"],
         affine=arrays["affine"],
-        penalty=penalty,
-        convention=PenaltyConvention(texts["penalty_convention"]),
+        penalty=settings.penalty,
+        convention=settings.convention,
     )
     return Coefficients(
         spline=spline,
         names=names,
         unit=texts["unit"],
-        components=Components(texts["components"]).value,
-        blend=float(fields["blend"]),
-        planar=bool(fields["planar"]),
+        settings=settings,
         source_sha256=texts["source_sha256"],
         destination_sha256=texts["destination_sha256"],
         source_mirrored=texts["source_mirrored"],

@@ -14,7 +14,7 @@ from pinwarp.core.errors import FileFormatError
 from pinwarp.core.names import visible
 from pinwarp.io.csv_cells import as_sentence, formula_unquoted, shortened
 from pinwarp.io.csv_text import Row, lines_of, read_text, refuse_binary, rows_of
-from pinwarp.io.session_header import penalty_of
+from pinwarp.io.setting_keys import penalty_of
 
 REQUIRED = ("name", "destination_landmarks")
 OPTIONAL = ("destination_mesh", "penalty", "components")

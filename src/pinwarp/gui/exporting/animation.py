@@ -21,8 +21,8 @@ from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.style import theme
 from pinwarp.gui.tasks.stepped_job import Steps
 from pinwarp.gui.views.canvas import Canvas
-from pinwarp.session.outputs.exports import solved
 from pinwarp.session.session import Session
+from pinwarp.session.warp.solved import solved
 
 Vertices = NDArray[np.float32]
 
@@ -96,15 +96,13 @@ def ends_of(session: Session) -> Ends:
     mesh = session.mesh(Side.SOURCE)
     if mesh is None:
         raise PinwarpError("There is no source mesh to warp: open one first.")
-    if session.components is Components.RIGID:
+    if session.settings.components is Components.RIGID:
         raise PinwarpError(
             "Only the rigid fit is applied, which is where the blend begins: nothing would move. "
             "Choose another part in Warp > Apply."
         )
-    warp, part = solved(session), as_drawn(session.components)
-    aligned, warped = (
-        drawable(warp.applied(part, blend).evaluate(mesh.vertices)) for blend in (0, 1)
-    )
+    warp, part = solved(session), as_drawn(session.settings.components)
+    aligned, warped = (drawable(warp.part(part, blend).evaluate(mesh.vertices)) for blend in (0, 1))
     return Ends(aligned, warped)
 
 

@@ -19,7 +19,6 @@ from pinwarp.io.meshes import NORMALS_SUFFIXES, SCALARS_SUFFIXES, write_mesh
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.mesh_data import warped_mesh_data
 from pinwarp.session.outputs.exports import (
-    applied_in_words,
     session_coefficients,
     warped_landmarks,
     warped_mesh,
@@ -27,6 +26,8 @@ from pinwarp.session.outputs.exports import (
 )
 from pinwarp.session.outputs.script import script_of
 from pinwarp.session.session import Session
+from pinwarp.session.warp.component_words import applied_in_words
+from pinwarp.session.warp.solved import solved
 
 
 class Exports(Capability):
@@ -127,14 +128,21 @@ class Exports(Capability):
 
     def export_warped(self, *, passengers: bool) -> None:
         """Ask for a file and write where the warp carries the passengers, or the pairs' source."""
+        session = self._editor.committed
         what = "passengers" if passengers else "landmarks"
+        if passengers and not session.passengers:
+            self._tasks.dialogs.tell_error(
+                "Cannot export passengers",
+                "There is no passenger: Ctrl+click on the source adds one.",
+            )
+            return
         proposal = self._tasks.folder() / f"{what}_warped.landmarks.csv"
         path = self._tasks.dialogs.ask_save(f"Export the warped {what}", LANDMARK_FILES, proposal)
         if path is None:
             return
         carried = warped_passengers if passengers else warped_landmarks
-        session = self._editor.committed
-        self._write(path, lambda: carried(session), Side.DESTINATION, applied_in_words(session))
+        applied = applied_in_words(session.settings)
+        self._write(path, lambda: carried(session), Side.DESTINATION, applied)
 
     def _write(
         self,
@@ -186,8 +194,8 @@ class Exports(Capability):
 
     def _say_exported(self, path: Path, session: Session) -> None:
         pairs = len(session.pairs)
-        penalty = f"penalty {format_length(session.warping_penalty, session.unit, 6)}"
-        what = applied_in_words(session)
+        penalty = f"penalty {format_length(session.settings.penalty, session.unit, 6)}"
+        what = applied_in_words(session.settings)
         self._tasks.said.emit(f"Exported {path.name}: {what} ({pairs} pairs, {penalty})")
 
     def ask_and_export_mesh(self) -> None:
@@ -205,11 +213,11 @@ class Exports(Capability):
 
         def write(progress: Progress) -> None:
             progress(0.05, "warping")
-            mesh, data = warped_mesh(session), NO_DATA
+            warp = solved(session)
+            mesh, data = warped_mesh(warp), NO_DATA
             if suffix in NORMALS_SUFFIXES:
                 data = warped_mesh_data(
-                    session,
-                    mesh,
+                    warp,
                     scalars=suffix in SCALARS_SUFFIXES,
                     progress=lambda share, stage: progress(0.1 + 0.7 * share, stage),
                 )

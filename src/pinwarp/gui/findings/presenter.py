@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from pinwarp.core.findings import FindingKind
+from pinwarp.core.findings import FindingKind, gravest_first
 from pinwarp.core.mirror import axis_to_mirror
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
@@ -130,8 +130,8 @@ class FindingsPresenter(Capability):
         found = quality.findings_in(session) if quality is not None else ()
         if judged is not None:
             found += named_findings(folds, judged, session)
-        # A stable sort: folds come behind what causes them, what is only isolated last.
-        found = tuple(sorted(found, key=lambda one: not one.finding.is_grave))
+        # Folds come behind what causes them, what is only isolated last.
+        found = gravest_first(found)
         self._found = tuple(one for one in found if one.finding.kind not in _TOLD_ELSEWHERE)
         self._table.model.show_findings(self._found)
         self.panel.show_findings(self._found, self._mirror_axis(quality))

@@ -27,8 +27,8 @@ from pinwarp.gui.maps.histogram import HistogramView
 from pinwarp.gui.maps.words import MEANINGS, TITLES, figure, note_of
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.colour_scale import ColourScale
-from pinwarp.session.editor import ViewState
 from pinwarp.session.judging.survey import Survey
+from pinwarp.session.view import ViewState
 
 _ROWS = (
     ("Mean", "mean"),

@@ -35,11 +35,12 @@ from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.gui.views.scenes import Scenes
 from pinwarp.gui.views.viewport import Viewport
 from pinwarp.gui.warp.warps import Warps
-from pinwarp.session.editor import Editor, ViewState
+from pinwarp.session.editor import Editor
 from pinwarp.session.judging.survey import Survey, Surveyor
 from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.session import Session
 from pinwarp.session.signals import isolated
+from pinwarp.session.view import ViewState
 from pinwarp.session.warp.solver import WarpResult
 
 MAP_ACTIONS = {kind: f"map_{kind.name.lower() if kind else 'none'}" for kind in (None, *MapKind)}

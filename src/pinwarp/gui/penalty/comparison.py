@@ -42,12 +42,12 @@ class PenaltyTrail:
 
     def __init__(self, editor: Editor) -> None:
         self._editor = editor
-        self._present = editor.committed.warping_penalty
+        self._present = editor.committed.settings.penalty
         self.previous: float | None = None
 
     def follow(self) -> None:
         """Look at what is committed now."""
-        editor, penalty = self._editor, self._editor.committed.warping_penalty
+        editor, penalty = self._editor, self._editor.committed.settings.penalty
         if editor.undo_label is None and editor.redo_label is None:
             # Another session: what was before it is nobody's previous penalty.
             self.previous = None

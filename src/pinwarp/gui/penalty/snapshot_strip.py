@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import weakref
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from qtpy.QtCore import QSize, Qt, Signal
 from qtpy.QtGui import (
@@ -73,17 +73,20 @@ class Snapshot:
             return "mesh changed"
         if self.mesh is not None and self.mesh() is not now.mesh:
             return "mesh changed"
-        pairs = (was.source, was.destination, was.planar)
-        if pairs != (now.source, now.destination, now.planar):
+        before, after = was.settings, now.settings
+        pairs = (was.source, was.destination, before.planar)
+        if pairs != (now.source, now.destination, after.planar):
             return "pairs changed"
-        if (was.components, was.blend) != (now.components, now.blend):
+        if (before.components, before.blend) != (after.components, after.blend):
             return "applied part changed"
-        return "convention changed" if was.convention is not now.convention else ""
+        if before.convention is not after.convention:
+            return "convention changed"
+        return "" if replace(before, penalty=after.penalty) == after else "settings changed"
 
     @property
     def title(self) -> str:
         """The penalty in words."""
-        penalty = self.inputs.penalty
+        penalty = self.inputs.settings.penalty
         return "Affine fit" if math.isinf(penalty) else format_length(penalty, self.unit, 3)
 
     @property
@@ -232,7 +235,7 @@ class SnapshotStrip(QScrollArea):
 
     def _tile(self, snapshot: Snapshot) -> SnapshotTile:
         tile = SnapshotTile(snapshot)
-        tile.taken.connect(lambda: self.penalty_requested.emit(snapshot.inputs.penalty))
+        tile.taken.connect(lambda: self.penalty_requested.emit(snapshot.inputs.settings.penalty))
         tile.removed.connect(lambda: self.removal_requested.emit(snapshot))
         return tile
 

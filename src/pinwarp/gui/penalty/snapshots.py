@@ -208,7 +208,7 @@ class Snapshots(Capability):
         now = WarpInputs.of(self._editor.session)
         for tile in self.strip.tiles:
             changed = tile.snapshot.what_changed(now)
-            tile.show_state(changed, tile.snapshot.inputs.penalty == now.penalty)
+            tile.show_state(changed, tile.snapshot.inputs.settings.penalty == now.settings.penalty)
 
 
 def picture_of(canvas: Canvas) -> QImage:

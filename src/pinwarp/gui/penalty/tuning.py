@@ -13,8 +13,9 @@ from pinwarp.gui.penalty.snapshots import Snapshots
 from pinwarp.gui.warp.quality import QualityPresenter
 from pinwarp.gui.warp.warps import Warps
 from pinwarp.session import edits
-from pinwarp.session.editor import Editor, ViewState
+from pinwarp.session.editor import Editor
 from pinwarp.session.judging.quality import Quality
+from pinwarp.session.view import ViewState
 from pinwarp.session.warp.solver import WarpResult
 
 
@@ -94,7 +95,7 @@ class PenaltyTuning(Capability):
 
     def _on_result(self, result: WarpResult) -> None:
         # Each widget that changes costs a composition of the window: only the slider's is live.
-        if result.inputs.penalty != self._editor.committed.warping_penalty:
+        if result.inputs.settings.penalty != self._editor.committed.settings.penalty:
             self.panel.show_result(result)
 
     def _on_quality(self, quality: Quality | None) -> None:

@@ -21,7 +21,7 @@ from pinwarp.gui.table.cells import FigureCells, LandmarkCells, NameCells
 from pinwarp.gui.table.columns import COLUMNS, LOCKED, NAME, column_number
 from pinwarp.gui.table.model import LandmarkModel
 from pinwarp.gui.table.order import LandmarkOrder
-from pinwarp.session.editor import Selection
+from pinwarp.session.view import Selection
 
 __all__ = ["LandmarkModel", "LandmarkTable"]
 

@@ -9,7 +9,7 @@ from pinwarp.core.alignment import Similarity
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.scene.camera_pose import Matrix, Pose, inverse, relation_of
 from pinwarp.gui.views.canvas import Canvas
-from pinwarp.session.editor import LinkMode
+from pinwarp.session.view import LinkMode
 
 
 class CameraLink:

@@ -27,7 +27,8 @@ from pinwarp.gui.style.icons import icon
 from pinwarp.gui.views.camera_link import CameraLink
 from pinwarp.gui.views.canvas import Canvas
 from pinwarp.gui.views.scenes import Scenes
-from pinwarp.session.editor import Editor, LinkMode
+from pinwarp.session.editor import Editor
+from pinwarp.session.view import LinkMode
 
 LINK_ACTIONS = {
     LinkMode.LINKED: "link_linked",

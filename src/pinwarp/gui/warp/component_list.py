@@ -19,14 +19,7 @@ from qtpy.QtWidgets import (
 
 from pinwarp.core.components import Components
 from pinwarp.gui.style import theme
-
-_WORDS = {
-    Components.FULL: ("Full warp", "meets every pair as closely as the penalty lets it"),
-    Components.WITHOUT_POSE: ("Without pose", "size and shape only: keeps the source's frame"),
-    Components.AFFINE: ("Affine fit", "moved, turned, sized and sheared as a whole"),
-    Components.SIMILARITY: ("Similarity fit", "moved, turned and sized"),
-    Components.RIGID: ("Rigid fit", "moved and turned, neither sized nor bent"),
-}
+from pinwarp.session.warp.component_words import COMPONENT_WORDS
 
 
 @dataclass(frozen=True)
@@ -112,7 +105,10 @@ class ComponentList(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self.rows = {part: ComponentRow(*_WORDS[part]) for part in Components}
+        self.rows = {
+            part: ComponentRow(words.title, words.meaning)
+            for part, words in COMPONENT_WORDS.items()
+        }
         group = QButtonGroup(self)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)

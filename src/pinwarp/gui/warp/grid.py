@@ -21,7 +21,8 @@ from pinwarp.gui.scene.drawables import Drawable, GridLines
 from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.gui.views.scenes import Scenes
 from pinwarp.gui.warp.warps import Warps
-from pinwarp.session.editor import Editor, GridKind
+from pinwarp.session.editor import Editor
+from pinwarp.session.view import GridKind
 
 GRID_ACTIONS = {kind: f"grid_{kind.name.lower()}" for kind in GridKind}
 _ACTIONS = {

@@ -22,10 +22,11 @@ from pinwarp.gui.capability.action import Action
 from pinwarp.gui.style import theme
 from pinwarp.gui.warp.component_list import ComponentList, Remainder
 from pinwarp.gui.warp.figures_view import FiguresView
-from pinwarp.session.editor import GridKind, ViewState
 from pinwarp.session.judging.quality import Quality
 from pinwarp.session.judging.warp_figures import determined_in_words, rms_text, warp_figures
 from pinwarp.session.session import Session
+from pinwarp.session.view import GridKind, ViewState
+from pinwarp.session.warp.component_words import COMPONENT_WORDS
 
 _GRIDS = {
     GridKind.NONE: "None",
@@ -34,15 +35,6 @@ _GRIDS = {
     GridKind.PLANE_Y: "Plane across y",
     GridKind.PLANE_Z: "Plane across z",
 }
-_ENDS = {
-    Components.FULL: ("Aligned source", "Full warp"),
-    Components.WITHOUT_POSE: ("Source", "Without pose"),
-    Components.AFFINE: ("Aligned source", "Affine fit"),
-    Components.SIMILARITY: ("Aligned source", "Similarity fit"),
-    Components.RIGID: ("Aligned source", "Rigid fit: the same"),
-}
-
-
 TAKEN_APART = "The affine fit of the pairs, and how the full warp bends beyond it:"
 
 
@@ -164,13 +156,17 @@ class WarpPanel(QScrollArea):
         """Show what a session applies."""
         unit_changed = session.unit != self._session.unit
         self._session = session
-        self.components.show_choice(session.components)
-        self.blend_value.setText(f"{session.blend:.0%}")
-        self.blend.setEnabled(bool(session.pairs) and session.components is not Components.RIGID)
-        for label, text in zip(self.ends, _ENDS[session.components], strict=True):
-            label.setText(text)
+        settings = session.settings
+        is_rigid = settings.components is Components.RIGID
+        self.components.show_choice(settings.components)
+        self.blend_value.setText(f"{settings.blend:.0%}")
+        self.blend.setEnabled(bool(session.pairs) and not is_rigid)
+        words = COMPONENT_WORDS[settings.components]
+        same = ": the same" if is_rigid else ""
+        self.ends[0].setText(words.start.capitalize())
+        self.ends[1].setText(words.title + same)
         if not self.blend.isSliderDown():
-            _place(self.blend, round(100 * session.blend))
+            _place(self.blend, round(100 * settings.blend))
         if unit_changed:
             self.show_quality(self._quality)
 

@@ -18,7 +18,7 @@ from pinwarp.gui.warp.quality import QualityPresenter
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.warp_figures import figures_table
-from pinwarp.session.outputs.exports import applied_in_words
+from pinwarp.session.warp.component_words import applied_in_words
 
 COMPONENT_ACTIONS = {part: f"apply_{part.name.lower()}" for part in Components}
 _ACTIONS = {
@@ -112,11 +112,12 @@ class WarpPresenter(Capability):
         session = self._editor.session
         self.panel.show_session(session)
         # What is not the whole warp must not be taken for it, here or in a file.
-        whole = session.components is Components.FULL and session.blend == 1
+        whole = session.settings.is_whole
         if self.player.is_playing:
             self.note.setText("Playing the blend: Esc or a click stops it")
         else:
-            self.note.setText("" if whole else f"Shown and exported: {applied_in_words(session)}")
+            applied = applied_in_words(session.settings)
+            self.note.setText("" if whole else f"Shown and exported: {applied}")
 
     def _on_view(self, _changed: object = None) -> None:
         self.panel.show_view(self._editor.view)
@@ -138,18 +139,18 @@ class WarpPresenter(Capability):
             COMPONENT_ACTIONS[part],
             text,
             lambda: self._apply(part),
-            checked=lambda: self._editor.session.components is part,
+            checked=lambda: self._editor.session.settings.components is part,
             at=f"components.{place}",
             tip=tip,
         )
 
     def _can_play(self) -> bool:
         session = self._editor.session
-        return bool(session.pairs) and session.components is not Components.RIGID
+        return bool(session.pairs) and session.settings.components is not Components.RIGID
 
     def _apply(self, components: Components) -> None:
         session = edits.set_components(self._editor.committed, components)
-        self._editor.commit(session, f"Apply {applied_in_words(session)}")
+        self._editor.commit(session, f"Apply {applied_in_words(session.settings)}")
         self._editor.look(overlay=True)
 
     def _preview(self, blend: float) -> None:

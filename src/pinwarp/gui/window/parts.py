@@ -108,7 +108,13 @@ class Parts:
         )
         self.exports = Exports(editor, tasks)
         self.pictures = PictureExport(editor, tasks, views, frame)
-        self.report = ReportExport(editor, tasks, views, lambda: session_name(editor.path))
+        self.report = ReportExport(
+            editor,
+            tasks,
+            views,
+            lambda: session_name(editor.path),
+            lambda: (self.warps.result, self.quality.quality),
+        )
         self.file_warping = FileWarping(editor, tasks)
         self.help = Help(
             dialogs, frame.faults, lambda: source.graphics, say, frame.toggle_shortcuts

@@ -17,12 +17,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pinwarp.core.words import counted
 from pinwarp.io.careful_xml import XmlError, xml_tree
 from pinwarp.io.mesh_formats.surface import (
     BrokenMeshError,
     Report,
     Surface,
-    counted,
     cut_strips,
 )
 

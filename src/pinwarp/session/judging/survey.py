@@ -22,7 +22,7 @@ from pinwarp.core.maps import (
 )
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.prediction import prediction_of
-from pinwarp.core.spline import PenaltyConvention, Spline
+from pinwarp.core.spline import Spline
 from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.session.judging.quality import LEAST_PAIRS
 from pinwarp.session.warp.solver import WarpResult
@@ -171,7 +171,9 @@ class Surveyor:
                 jacobian = jacobians(shown, mesh.vertices)
                 made = stretch_maps(jacobian, mesh, self._taken_out)
             case MapKind.UNCERTAINTY:
-                prediction = prediction_of(factor, np.array(inputs.destination), inputs.penalty)
+                prediction = prediction_of(
+                    factor, np.array(inputs.destination), inputs.settings.penalty
+                )
                 made = (uncertainty_map(prediction, mesh),) if prediction is not None else ()
         self.maps += len(made)
         self._maps.update({part.kind: part for part in made})
@@ -197,7 +199,7 @@ def _missing(result: WarpResult, destination: Mesh | None, kind: MapKind) -> str
     if kind is MapKind.UNCERTAINTY:
         if len(inputs.source) < LEAST_PAIRS:
             return FEW_PAIRS
-        if inputs.convention is not PenaltyConvention.REGULARISING and inputs.penalty > 0:
+        if not inputs.settings.is_regular:
             return (
                 "The uncertainty belongs to the regularising convention: "
                 "choose that one, or a penalty of 0."

@@ -61,18 +61,19 @@ def write_session(path: str | Path, session: Session) -> None:
 
     Raises
     ------
-    LandmarkError, PenaltyError
-        When it could not be read back: two landmarks have one name, or the penalty is negative.
+    LandmarkError
+        When it could not be read back: two landmarks have one name.
     OSError
         When the file cannot be written; an older one is untouched.
 
     Examples
     --------
     >>> import tempfile
+    >>> from pinwarp.core.settings import WarpSettings
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder, "femur.pinwarp.csv")
-    ...     write_session(path, Session(warping_penalty=2.5))
-    ...     read_session(path).warping_penalty
+    ...     write_session(path, Session(settings=WarpSettings(2.5)))
+    ...     read_session(path).settings.penalty
     2.5
     """
     session_file.write_session(path, to_record(session))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import closing
@@ -11,9 +10,11 @@ from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError, PinwarpError, words_of
 from pinwarp.core.landmarks import Role
-from pinwarp.io.manifest import Manifest
+from pinwarp.core.settings import WarpSettings
+from pinwarp.io.manifest import Manifest, Subject
 from pinwarp.io.meshes import MESH_SUFFIXES
 from pinwarp.io.summary_file import SummaryRow, read_summary, write_summary
+from pinwarp.session.outputs.replacing import refuse_to_replace
 from pinwarp.session.session import Session, to_record
 from pinwarp.session.study.subject import Outcome, Task, made_from, places_of, warp_subject
 from pinwarp.session.study.workers import Runner, WorkEnded
@@ -95,7 +96,7 @@ def plan(
     ...     read_session(sample_session()),
     ...     Path("/study/warped"),
     ... )
-    >>> task.mesh.name, task.session.warping_penalty
+    >>> task.mesh.name, task.session.settings.penalty
     ('anna_warped.ply', 0.5)
     """
     record = to_record(source)
@@ -117,10 +118,7 @@ def plan(
             manifest=manifest.path,
             session=replace(
                 shared,
-                warping_penalty=(
-                    shared.warping_penalty if subject.penalty is None else subject.penalty
-                ),
-                components=subject.components or shared.components,
+                settings=_settings(shared.settings, subject),
             ),
             mesh=folder / f"{subject.name}_warped{suffix}",
             passengers=(
@@ -137,24 +135,13 @@ def plan(
     return tasks
 
 
-def refuse_to_replace(inputs: Iterable[Path], outputs: Iterable[Path]) -> None:
-    """Raise when an output is one of the inputs.
-
-    Raises
-    ------
-    PinwarpError
-        With the file's name and the way out.
-
-    Examples
-    --------
-    >>> refuse_to_replace([Path("femur.ply")], [Path("warped/femur.ply")])
-    """
-    real = {os.path.realpath(path) for path in inputs}
-    for path in outputs:
-        if os.path.realpath(path) in real:
-            raise PinwarpError(
-                f"{path} would be replaced, but it is read: choose another folder for the output."
-            )
+def _settings(shared: WarpSettings, subject: Subject) -> WarpSettings:
+    """Return the settings for one subject: its row of the manifest goes before the source's."""
+    return replace(
+        shared,
+        penalty=shared.penalty if subject.penalty is None else subject.penalty,
+        components=subject.components or shared.components,
+    )
 
 
 def run(
@@ -273,7 +260,7 @@ def _row(task: Task, result: Outcome | Exception) -> SummaryRow:
     distance = checked.distance
     figures = {
         "pairs": len(checked.pairs),
-        "penalty": task.session.warping_penalty,
+        "penalty": task.session.settings.penalty,
         "rms_residual": checked.rms_residual,
         "rms_leave_one_out": checked.rms_leave_one_out,
         "suggested_penalty": checked.suggested_penalty,

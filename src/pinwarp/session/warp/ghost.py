@@ -13,7 +13,7 @@ from pinwarp.core.spline import PenaltyConvention
 from pinwarp.session.warp.solver import WarpResult
 
 # With fewer pairs a prediction says more about the pairs than about the bone.
-LEAST_PAIRS = 3
+FEWEST_PAIRS = 3
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def _predicted(landmark: Landmark | None, side: Side, result: WarpResult) -> Gho
     if landmark is None or landmark.position(side) is not None or factor is None or spline is None:
         return None
     known = landmark.position(side.other)
-    if known is None or len(factor.source) < LEAST_PAIRS:
+    if known is None or len(factor.source) < FEWEST_PAIRS:
         return None
     if side is Side.DESTINATION:
         source = np.array([known])
