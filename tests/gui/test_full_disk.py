@@ -48,7 +48,7 @@ def test_saving_leaves_the_file_and_the_work(user, sample_copy, fill_the_disk):
     assert "Nothing was lost" in told(user, sample_copy.name)
     assert content_of(sample_copy.parent) == before
     assert user.editor.is_dirty
-    assert user.session.warping_penalty == 7.0
+    assert user.session.settings.penalty == 7.0
 
 
 @pytest.mark.parametrize(

@@ -29,7 +29,7 @@ def save(user):
 
 
 def change(user):
-    session = edits.set_penalty(user.session, user.session.warping_penalty + 1)
+    session = edits.set_penalty(user.session, user.session.settings.penalty + 1)
     user.editor.commit(session, "Change penalty")
     user.settle()
 
@@ -78,7 +78,7 @@ def test_a_mesh_that_is_gone_is_told_when_the_session_is_saved(saved, sample_cop
     save(saved)
     message = saved.window.statusBar().currentMessage()
     assert message.startswith(f"Saved {sample_copy.name}, but its mesh femur_generic.ply is not in")
-    assert read_session(sample_copy).warping_penalty == saved.session.warping_penalty
+    assert read_session(sample_copy).warping_penalty == saved.session.settings.penalty
     # What was read is still there to be warped.
     saved.dialogs.saves = [tmp_path / "warped.stl"]
     saved.trigger("export_mesh")
