@@ -43,6 +43,8 @@ class FindingsPresenter(Capability):
         Mirrors the source.
     views
         Look at landmarks.
+    undo_key
+        Which key undoes a remedy.
     say
         Says a sentence in passing.
     """
@@ -56,6 +58,7 @@ class FindingsPresenter(Capability):
         hand: Hand,
         bones: BoneEdits,
         views: ViewControls,
+        undo_key: str,
         say: Callable[[str], None],
     ) -> None:
         self._editor = editor
@@ -65,6 +68,7 @@ class FindingsPresenter(Capability):
         self._hand = hand
         self._bones = bones
         self._views = views
+        self._undo_key = undo_key
         self._say = say
         self._found: tuple[NamedFinding, ...] = ()
         self._shown_for: object = None
@@ -183,4 +187,4 @@ class FindingsPresenter(Capability):
             session = edits.set_enabled(self._editor.committed, names, False)
             self._editor.commit(session, f"Disable {in_words(names)}")
             takes = "takes" if len(names) == 1 else "take"
-            self._say(f"{in_words(names)} no longer {takes} part: Ctrl+Z undoes it.")
+            self._say(f"{in_words(names)} no longer {takes} part: {self._undo_key} undoes it.")

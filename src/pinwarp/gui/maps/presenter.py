@@ -131,19 +131,20 @@ class MapPresenter(Capability):
             keys="Shift+Space",
             tip="Where the uncertainty map says that the next landmark helps most",
         )
+        following = Action(
+            "map_next",
+            "Next &Map",
+            self._next_map,
+            at="maps.31",
+            keys="M",
+            tip="Colour the warped source by something else",
+        )
         self.actions = (
             *one_of(map(self._action_of, (None, *MapKind)), parent),
-            Action(
-                "map_next",
-                "Next &Map",
-                self._next_map,
-                at="maps.31",
-                keys="M",
-                tip="Colour the warped source by something else",
-            ),
+            following,
             suggest,
         )
-        self.panel = MapPanel(suggest)
+        self.panel = MapPanel(suggest, following.keys, hand.accept_action.keys)
         self.panels = (Panel("map", "Map", self.panel),)
         self._connect(view)
         self._on_view()
@@ -229,8 +230,8 @@ class MapPresenter(Capability):
         there = self._taken_by()
         if there is not None:
             self.refused.emit(
-                f"{there} is there already: place it on the destination too (Space accepts its "
-                "ghost)."
+                f"{there} is there already: place it on the destination too "
+                f"({self._hand.accept_action.keys} accepts its ghost)."
             )
             return
         name = self._ghosts.target(Side.SOURCE)

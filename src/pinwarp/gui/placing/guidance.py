@@ -125,23 +125,27 @@ class Guidance(Capability):
             self.hint.setText(f"Open the {missing[0].value} mesh to begin, or drop it on its view.")
             return
         if editor.view.locked:
-            self.hint.setText("Landmarks are locked (L unlocks): a click selects, a drag orbits.")
+            self.hint.setText(
+                f"Landmarks are locked ({self._hand.lock_action.keys} unlocks): a click selects, "
+                "a drag orbits."
+            )
             return
         target = self._ghosts.target
         targets = [f"on the {side.value} places {target(side) or 'a new one'}" for side in Side]
-        ghost = "  Space accepts the ghost." if any(map(self._ghosts.at, Side)) else ""
+        space = self._hand.accept_action.keys
+        ghost = f"  {space} accepts the ghost." if any(map(self._ghosts.at, Side)) else ""
         self.hint.setText(f"A click {targets[0]}, {targets[1]}.{ghost}")
 
     def _hover_words(self, name: str) -> str:
         landmark = self._editor.session.landmark(name)
         if landmark is None:
             return name
-        words = [f"{name}: {landmark.state.value}"]
+        words, snap = [f"{name}: {landmark.state.value}"], self._hand.snap_action.keys
         for side in Side:
             off = self._hand.distance_off(landmark, side)
             if off:
                 unit = self._editor.session.unit
-                words.append(f"{off:.3g} {unit} off the {side.value} surface (S snaps)")
+                words.append(f"{off:.3g} {unit} off the {side.value} surface ({snap} snaps)")
         if landmark.locked or self._editor.view.locked:
             words.append("locked")
         else:

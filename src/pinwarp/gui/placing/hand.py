@@ -24,7 +24,6 @@ from pinwarp.session.signals import isolated
 NUDGE_SHARE = 1 / 500
 # Nearer to the surface than this share of the bone, a landmark counts as on it.
 ON_SURFACE = 1e-4
-ALL_LOCKED = "All landmarks are locked: L unlocks them."
 
 
 class Hand(Capability):
@@ -53,7 +52,38 @@ class Hand(Capability):
         self._editor = editor
         self._viewports = viewports
         self._ghosts = ghosts
-        self.actions = (*self._on_selection(), *self._elsewhere())
+        self.snap_action = Action(
+            "snap",
+            "S&nap to Surface",
+            self.snap,
+            at="Place.31",
+            keys="S",
+            tip="Put the selection back onto the bone",
+        )
+        self.accept_action = Action(
+            "accept_ghost",
+            "&Accept Ghost",
+            self.accept_ghost,
+            at="Place.11",
+            keys="Space",
+            tip="Place it where it is expected",
+        )
+        self.lock_action = Action(
+            "lock",
+            "&Lock Landmarks",
+            switches=lambda on: editor.look(locked=on),
+            checked=lambda: editor.view.locked,
+            at="Place.33 tools.31",
+            keys="L",
+            icon="lock",
+            tip="Freeze all landmarks",
+        )
+        self.actions = (
+            self.snap_action,
+            self.accept_action,
+            self.lock_action,
+            *self._on_selection(),
+        )
         for side, viewport in viewports.items():
             self._connect(side, viewport)
 
@@ -89,38 +119,12 @@ class Hand(Capability):
                 tip="Of two landmarks",
                 possible=self._can_swap,
             ),
-            Action(
-                "snap",
-                "S&nap to Surface",
-                self.snap,
-                at="Place.31",
-                keys="S",
-                tip="Put the selection back onto the bone",
-            ),
         )
 
-    def _elsewhere(self) -> tuple[Action, ...]:
-        editor = self._editor
-        return (
-            Action(
-                "accept_ghost",
-                "&Accept Ghost",
-                self.accept_ghost,
-                at="Place.11",
-                keys="Space",
-                tip="Place it where it is expected",
-            ),
-            Action(
-                "lock",
-                "&Lock Landmarks",
-                switches=lambda on: editor.look(locked=on),
-                checked=lambda: editor.view.locked,
-                at="Place.33 tools.31",
-                keys="L",
-                icon="lock",
-                tip="Freeze all landmarks",
-            ),
-        )
+    @property
+    def all_locked(self) -> str:
+        """Why nothing is moved while all landmarks are locked."""
+        return f"All landmarks are locked: {self.lock_action.keys} unlocks them."
 
     def _can_swap(self) -> bool:
         session, names = self._editor.session, self._editor.selection.names
@@ -274,7 +278,7 @@ class Hand(Capability):
     def _is_locked(self, landmark: Landmark | None = None) -> bool:
         """Say whether landmarks (or one of them) are frozen, telling the user so."""
         if self._editor.view.locked:
-            self.refused.emit(ALL_LOCKED)
+            self.refused.emit(self.all_locked)
             return True
         if landmark is not None and landmark.locked:
             self.refused.emit(f"{landmark.name} is locked: unlock it in the table.")

@@ -21,12 +21,15 @@ class FilterLine(QLineEdit):
         super().__init__()
         self._rows = rows
         self.setPlaceholderText("Filter by name or state")
-        self.setToolTip(
-            "Words that the name, note or state contains, such as: incomplete, suspect (Ctrl+F)"
-        )
         self.setAccessibleName("Filter the landmarks")
         self.setClearButtonEnabled(True)
         self.addAction(icon("search"), QLineEdit.ActionPosition.LeadingPosition)
+
+    def name_key(self, key: str) -> None:
+        """Say which key goes here."""
+        self.setToolTip(
+            f"Words that the name, note or state contains, such as: incomplete, suspect ({key})"
+        )
 
     def event(self, event: QEvent) -> bool:
         """Take Esc before the window does."""

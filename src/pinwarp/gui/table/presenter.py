@@ -10,7 +10,7 @@ from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Landmark, Role, Side
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability, Panel
-from pinwarp.gui.placing.hand import ALL_LOCKED
+from pinwarp.gui.placing.hand import Hand
 from pinwarp.gui.table.columns import COLUMNS
 from pinwarp.gui.table.model import LandmarkModel
 from pinwarp.gui.table.panel import LandmarkPanel
@@ -35,6 +35,8 @@ class TablePresenter(Capability):
         The truth.
     warps
         What stands in the table's columns.
+    hand
+        Whether landmarks may be moved.
     dialogs
         Tells what could not be pasted.
     say
@@ -45,11 +47,13 @@ class TablePresenter(Capability):
         self,
         editor: Editor,
         warps: Warps,
+        hand: Hand,
         dialogs: Dialogs,
         say: Callable[[str], None],
     ) -> None:
         self._editor = editor
         self._warps = warps
+        self._hand = hand
         self._say = say
         self.model = LandmarkModel()
         self.table = LandmarkTable(self.model)
@@ -58,6 +62,10 @@ class TablePresenter(Capability):
         self.panels = (Panel("landmarks", "Landmarks", self.panel),)
         self.menus = {"row": self.panel.row_menu, "header": self.panel.header_menu}
         self._spreadsheet = Spreadsheet(editor, dialogs, say)
+        self._filter = Action(
+            "filter", "&Filter Landmarks", self.panel.start_filtering, at="Edit.82", keys="Ctrl+F"
+        )
+        self.panel.filter.name_key(self._filter.keys)
         self._toggle_enabled, self._toggle_locked, self._toggle_role = self._of_states()
         self.actions = (
             *(self._toggle_enabled, self._toggle_locked, self._toggle_role),
@@ -179,13 +187,7 @@ class TablePresenter(Capability):
                 keys="Alt+Down",
                 possible=self._is_selected,
             ),
-            Action(
-                "filter",
-                "&Filter Landmarks",
-                self.panel.start_filtering,
-                at="Edit.82",
-                keys="Ctrl+F",
-            ),
+            self._filter,
             Action(
                 "next_incomplete",
                 "Next &Incomplete Landmark",
@@ -282,7 +284,7 @@ class TablePresenter(Capability):
     def _on_edit(self, column: int, name: str, text: str) -> None:
         edit, label = COLUMNS[column].edit, COLUMNS[column].label
         if COLUMNS[column].side is not None and self._editor.view.locked:
-            self._say(ALL_LOCKED)
+            self._say(self._hand.all_locked)
         elif edit is not None:
             self._commit_renamed(lambda session: edit(session, name, text), label.format(name))
 

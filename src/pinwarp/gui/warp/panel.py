@@ -45,6 +45,8 @@ class WarpPanel(QScrollArea):
     ----------
     play
         The action that plays the blend.
+    grid_key
+        Which key draws the next grid.
     """
 
     components_requested = Signal(object)
@@ -55,7 +57,7 @@ class WarpPanel(QScrollArea):
     grid_share_requested = Signal(float)
     copy_requested = Signal()
 
-    def __init__(self, play: Action) -> None:
+    def __init__(self, play: Action, grid_key: str) -> None:
         super().__init__()
         self._session = Session()
         self._quality: Quality | None = None
@@ -70,7 +72,7 @@ class WarpPanel(QScrollArea):
         self.grid = QComboBox()
         for kind, text in _GRIDS.items():
             self.grid.addItem(text, kind)
-        self.grid.setToolTip("Straight on the source, bent by the warp (D for the next)")
+        self.grid.setToolTip(f"Straight on the source, bent by the warp ({grid_key} for the next)")
         self.grid.setAccessibleName("Grid")
         self.grid_share = _slider("Place of the plane", "Where the plane crosses its axis", 100)
         # The grid's kinds stay where they are while it comes and goes.

@@ -39,6 +39,8 @@ class WarpPresenter(Capability):
         The truth.
     quality
         Where the figures come from.
+    grid_key
+        Which key draws the next grid.
     say
         Says a sentence in passing.
     parent
@@ -49,6 +51,7 @@ class WarpPresenter(Capability):
         self,
         editor: Editor,
         quality: QualityPresenter,
+        grid_key: str,
         say: Callable[[str], None],
         parent: QObject,
     ) -> None:
@@ -79,7 +82,7 @@ class WarpPresenter(Capability):
         )
         components = one_of(map(self._action_of, Components), parent)
         self.actions = (*components, self._play_action, self._copy_action)
-        self.panel = WarpPanel(self._play_action)
+        self.panel = WarpPanel(self._play_action, grid_key)
         self.panels = (Panel("warp", "Warp", self.panel),)
         self._connect()
         self._on_session()

@@ -85,15 +85,23 @@ class Parts:
         self.hand = Hand(editor, views, self.ghosts)
         self.bones = BoneEdits(editor)
         self.guidance = Guidance(editor, self.hand, self.ghosts, tasks)
-        self.table = TablePresenter(editor, self.warps, dialogs, say)
-        self.warp = WarpPresenter(editor, self.quality, say, frame)
+        self.table = TablePresenter(editor, self.warps, self.hand, dialogs, say)
         self.grid = GridPresenter(editor, self.warps, scenes, frame)
+        self.warp = WarpPresenter(editor, self.quality, self.grid.following.keys, say, frame)
         self.maps = MapPresenter(
             editor, self.warps, self.hand, self.ghosts, scenes, destination, frame
         )
         self.overlay = OverlayControls(editor, self.maps)
         self.findings = FindingsPresenter(
-            editor, self.quality, self.maps, self.table, self.hand, self.bones, self.views, say
+            editor,
+            self.quality,
+            self.maps,
+            self.table,
+            self.hand,
+            self.bones,
+            self.views,
+            self.undoing.undo.keys,
+            say,
         )
         self.comparison = PenaltyComparison(editor, scenes, say, frame)
         self.snapshots = Snapshots(

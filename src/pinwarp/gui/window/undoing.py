@@ -18,7 +18,7 @@ class Undoing(Capability):
 
     def __init__(self, editor: Editor) -> None:
         self._editor = editor
-        self._undo = Action(
+        self.undo = Action(
             "undo",
             "&Undo",
             editor.undo,
@@ -27,7 +27,7 @@ class Undoing(Capability):
             icon="undo",
             possible=lambda: editor.undo_label is not None,
         )
-        self._redo = Action(
+        self.redo = Action(
             "redo",
             "&Redo",
             editor.redo,
@@ -38,8 +38,8 @@ class Undoing(Capability):
             possible=lambda: editor.redo_label is not None,
         )
         self.actions = (
-            self._undo,
-            self._redo,
+            self.undo,
+            self.redo,
             Action("select_none", "Select &None", editor.select, at="Edit.81", keys="Esc"),
         )
         self._signals = (editor.session_changed, editor.saved)
@@ -58,7 +58,7 @@ class Undoing(Capability):
             # What can be undone is about the committed session: a drag need not wait for it.
             return
         for action, verb, label in (
-            (self._undo, "&Undo", editor.undo_label),
-            (self._redo, "&Redo", editor.redo_label),
+            (self.undo, "&Undo", editor.undo_label),
+            (self.redo, "&Redo", editor.redo_label),
         ):
             action.reword(f"{verb} {label}" if label else verb)
