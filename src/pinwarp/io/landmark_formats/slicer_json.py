@@ -108,14 +108,18 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
 
 def _parsed(path: str | Path, text: str) -> tuple[Any, list[str]]:
     """Return what the JSON says, and what the user should know about how it was understood."""
-    parts = text.count("{") + text.count("[")
-    # A point has three; more than memory holds are quickly written.
-    if parts > 10 * MOST:
-        raise FileFormatError(
-            path,
-            f"It has {parts:,} lists, far more than landmarks. Check that it is the right file.",
-            1,
-        )
+    # A point has three lists and a dozen keys; more than memory holds are quickly written.
+    for what, count, most in (
+        ("lists", text.count("{") + text.count("["), 10 * MOST),
+        ("keys", text.count(":"), 30 * MOST),
+    ):
+        if count > most:
+            raise FileFormatError(
+                path,
+                f"It has {count:,} {what}, far more than landmarks. Check that it is the right "
+                "file.",
+                1,
+            )
     try:
         root, repeated = read_json(text, whole_as_float=True)
     except json.JSONDecodeError as error:
