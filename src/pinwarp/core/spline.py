@@ -23,6 +23,7 @@ from pinwarp.core.alignment import fit_similarity
 from pinwarp.core.errors import LandmarkError, PenaltyError, SingularSystemError
 from pinwarp.core.factor import SourceFactor, as_positions, factorise, solve_upper
 from pinwarp.core.findings import Finding, FindingKind
+from pinwarp.core.lengths import rounding_among
 
 Matrix = NDArray[np.float64]
 
@@ -285,7 +286,7 @@ def _conflicts(factor: SourceFactor, destination: Matrix, penalty: float) -> tup
     found = []
     for i, j in factor.duplicates:
         apart = float(np.linalg.norm(destination[i] - destination[j]))
-        if apart > 1e-9 * float(np.abs(destination).max()):
+        if apart > rounding_among(destination):
             found.append(Finding(FindingKind.CONFLICT, (i, j), apart))
     return tuple(found)
 
