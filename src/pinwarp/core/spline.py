@@ -30,6 +30,7 @@ from pinwarp.core.errors import (
 )
 from pinwarp.core.factor import SourceFactor, factorise, solve_upper
 from pinwarp.core.findings import Finding, FindingKind
+from pinwarp.core.lengths import rounding_among
 from pinwarp.core.positions import as_positions, in_range, is_real_number, quiet
 
 Matrix = NDArray[np.float64]
@@ -355,10 +356,9 @@ def _conflicts(factor: SourceFactor, destination: Matrix, penalty: float) -> tup
     if penalty > 0:
         return ()
     found = []
-    rounding = 1e-9 * float(np.abs(destination).max())
     for rows in factor.duplicates:
         apart = float(pdist(destination[list(rows)]).max())
-        if apart > rounding:
+        if apart > rounding_among(destination):
             found.append(Finding(FindingKind.CONFLICT, rows, apart))
     return tuple(found)
 

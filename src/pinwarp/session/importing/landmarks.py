@@ -9,13 +9,12 @@ from pathlib import Path
 
 from pinwarp.core.landmarks import Landmark, Role, Side
 from pinwarp.core.names import look_alikes, visible
+from pinwarp.core.words import NAMED
 from pinwarp.io.landmark_files import LandmarkReading
 from pinwarp.session import edits
 from pinwarp.session.importing.fit import Fit
 from pinwarp.session.naming import free_names, is_automatic
 from pinwarp.session.session import Session
-
-_MOST_NAMED = 3
 
 
 class Pairing(StrEnum):
@@ -297,7 +296,7 @@ def summary(found: Iterable[Arrival], waiting: Sequence[str] = ()) -> str:
 
 
 def _named(names: Sequence[str]) -> str:
-    return f" ({', '.join(names)})" if len(names) <= _MOST_NAMED else ""
+    return f" ({', '.join(names)})" if len(names) <= NAMED else ""
 
 
 def _read(arriving: Arriving, choice: ImportChoice) -> tuple[Landmark, ...]:

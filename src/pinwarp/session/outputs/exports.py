@@ -11,7 +11,7 @@ from pinwarp.core.landmarks import Landmark
 from pinwarp.core.mesh import Mesh
 from pinwarp.io.coefficients import Coefficients
 from pinwarp.session.session import Session
-from pinwarp.session.warp.solved import SolvedWarp, solved
+from pinwarp.session.warp.solved import SolvedWarp, solved, source_of
 from pinwarp.version import __version__
 
 
@@ -31,6 +31,9 @@ def warped_mesh(session: Session | SolvedWarp) -> Mesh:
     >>> warped_mesh(session).vertices.shape
     (10000, 3)
     """
+    if isinstance(session, Session):
+        # What is missing first is told first, and costs no solve.
+        source_of(session)
     return solved(session).mesh
 
 

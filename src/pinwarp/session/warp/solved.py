@@ -87,20 +87,8 @@ class SolvedWarp:
 
     @property
     def source(self) -> Mesh:
-        """The source mesh.
-
-        Raises
-        ------
-        PinwarpError
-            When there is none; the message says what to do.
-        """
-        mesh = self.session.mesh(Side.SOURCE)
-        if mesh is None and self.session.source is not None:
-            place = self.session.source.path
-            raise PinwarpError(f"The source mesh {place} is not there. Was it moved or renamed?")
-        if mesh is None:
-            raise PinwarpError("There is no source mesh to warp: open one first.")
-        return mesh
+        """The source mesh; see :func:`source_of`."""
+        return source_of(self.session)
 
     @cached_property
     def mesh(self) -> Mesh:
@@ -187,6 +175,23 @@ def solved(session: Session | SolvedWarp, known: WarpResult | None = None) -> So
     if result is None or result.factor is None or result.spline is None:
         raise PinwarpError((result and result.problem) or NO_PAIR)
     return SolvedWarp(session, result.factor, result.spline, result)
+
+
+def source_of(session: Session) -> Mesh:
+    """Return the source mesh of a session.
+
+    Raises
+    ------
+    PinwarpError
+        When there is none; the message says what to do.
+    """
+    mesh = session.mesh(Side.SOURCE)
+    if mesh is None and session.source is not None:
+        place = session.source.path
+        raise PinwarpError(f"The source mesh {place} is not there. Was it moved or renamed?")
+    if mesh is None:
+        raise PinwarpError("There is no source mesh to warp: open one first.")
+    return mesh
 
 
 def in_parts(
