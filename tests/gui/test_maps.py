@@ -192,6 +192,7 @@ def test_a_click_on_the_legend_fixes_its_range_while_the_penalty_changes_and_ano
     before = legend.content
     assert not before.fixed
     QTest.mouseClick(legend, Qt.MouseButton.LeftButton)
+    sample.settle()
     assert legend.content.fixed
     assert panel.fixed.isChecked()
     sample.editor.commit(edits.set_penalty(sample.session, float("inf")), "Change penalty")
@@ -204,6 +205,7 @@ def test_a_click_on_the_legend_fixes_its_range_while_the_penalty_changes_and_ano
     choose(sample, MapKind.DISTANCE)
     assert legend.content.fixed
     QTest.mouseClick(legend, Qt.MouseButton.LeftButton)
+    sample.settle()
     assert not legend.content.fixed
     assert legend.content.range == sample.window.parts.maps.survey.map.range
 
@@ -230,13 +232,12 @@ def test_a_range_typed_into_the_panel_is_the_legends_and_nonsense_is_refused_in_
     )
     type_into(panel.low, "0,5")
     type_into(panel.high, "3")
+    sample.settle()
     assert (legend.content.kind, legend.content.range) == (MapKind.VOLUME, (0.5, 3.0))
-    assert [tick.text for tick in ColourScale(MapKind.VOLUME, (0.5, 3.0)).ticks()] == [
-        "½",
-        "1",
-        "2",
-    ]
+    ticks = ColourScale(legend.content.kind, legend.content.range).ticks()
+    assert [tick.text for tick in ticks] == ["½", "1", "2"]
     type_into(panel.low, "-1")
+    sample.settle()
     assert "above 0" in panel.note.text()
     assert panel.note.isVisible()
     assert legend.content.range == (0.5, 3.0)
@@ -520,7 +521,10 @@ def test_a_survey_that_comes_too_late_is_dropped(sample, monkeypatch):
     place = np.array(sample.session.pairs[0].destination) + 3.0
     session = edits.move(sample.session, name, DESTINATION, as_position(place))
     sample.editor.commit(session, "Move")
-    sample.qtbot.waitUntil(lambda: sample.window.parts.warps.result is not late)
+    window = sample.window
+    sample.qtbot.waitUntil(
+        lambda: window.parts.warps.result is not late and window.scenes.is_settled, timeout=30_000
+    )
     assert not is_coloured(sample)
     gate.set()
     sample.settle()

@@ -297,6 +297,7 @@ def test_hovering_a_landmark_shows_its_name_on_both_sides(user):
     user.qtbot.mouseMove(viewport, QPoint(5, 5))
     user.qtbot.mouseMove(viewport, user.place_of(SOURCE, seen[0].position))
     user.qtbot.waitUntil(lambda: user.editor.view.hovered == seen[0].name)
+    user.settle()
     labelled = [
         m.name for v in user.window.viewports.values() for m in v.layer.markers if m.labelled
     ]

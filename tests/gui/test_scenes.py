@@ -67,7 +67,9 @@ def test_ten_previews_and_a_drop_show_no_scene_twice(sample):
     shows, renders = scenes.shows, window.viewports[DESTINATION].renders
     for step in range(1, 11):
         sample.editor.preview(moved(sample, 0.3 * step))
-        sample.qtbot.waitUntil(lambda: window.parts.warps.is_settled and scenes.is_settled)
+        sample.qtbot.waitUntil(
+            lambda: window.parts.warps.is_settled and scenes.is_settled, timeout=30_000
+        )
     sample.editor.commit(moved(sample, 3.0), "Move")
     sample.settle()
     # Each landmark at once and each warp; fewer where the two arrive in one turn.
