@@ -85,12 +85,10 @@ TAKEN = {
     "columns first": np.asfortranarray(SOURCE),
     "backwards": SOURCE[::-1][::-1],
     "the other byte order": SOURCE.astype(">f8"),
-    "a matrix": np.asmatrix(SOURCE),
     "long doubles": SOURCE.astype(np.longdouble),
 }
 
 
-@pytest.mark.filterwarnings("ignore:the matrix subclass:PendingDeprecationWarning")
 @pytest.mark.parametrize("name", ODD)
 @pytest.mark.parametrize("side", ["source", "destination"])
 def test_odd_landmarks_are_refused_in_words(name, side):
