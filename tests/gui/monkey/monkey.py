@@ -34,6 +34,8 @@ SETTLE_SECONDS = 120
 JOURNAL_SECONDS = 30
 # The memory of the first thousand steps may grow by so much.
 WARM_AFTER, MOST_GROWTH = 1000, 1.10
+# More than at the start; what is open differs, but nothing may add up.
+MOST_MORE = {"top_level": 20, "objects": 300, "vtk": 40}
 
 
 @dataclass(frozen=True)
@@ -93,10 +95,12 @@ class Monkey:
         """Do so many random things, and raise :class:`Broken` at the first that breaks."""
         with self._watch:
             try:
+                start = self._count(0, 0)
+                print(start, flush=True)
                 for number in range(1, steps + 1):
                     self._step(number)
                     if number % CHECK_EVERY == 0 or number == steps:
-                        self._check(number)
+                        self._check(number, start)
             finally:
                 self.answers.stop()
 
@@ -104,9 +108,10 @@ class Monkey:
         # Of its own for each step: what one of them draws does not shift those after it.
         self._rng = random.Random(f"{self._seed} {number}")
         self.answers.given.clear()
-        said = "…"
+        self._steps.append(f"{number}: …")
         try:
             said = self._hands.act(self._rng)
+            self._steps[-1] = f"{number}: {said}"
         except Exception as error:  # a virtual method of a widget may hand it through
             self._watch.note(error)
         for _ in range(2):
@@ -114,7 +119,7 @@ class Monkey:
         # Most users wait a moment; some do not.
         if self._rng.random() < 0.6:
             self._settle()
-        self._steps.append("; ".join((f"{number}: {said}", *self.answers.given)))
+        self._steps[-1] = "; ".join((self._steps[-1], *self.answers.given))
         self._nothing_seen(number)
         if not self.window.isVisible():
             self.window.deleteLater()
@@ -170,7 +175,7 @@ class Monkey:
                 self._require(False, f"{words()}, for {seconds} s")
             QTest.qWait(2)
 
-    def _check(self, number: int) -> None:
+    def _check(self, number: int, start: Figures) -> None:
         self._settle()
         steps = self._history_holds()
         self._settle()
@@ -179,6 +184,9 @@ class Monkey:
         self.figures.append(figures)
         print(figures, flush=True)
         self._nothing_seen(number)
+        for what, more in MOST_MORE.items():
+            before, now = getattr(start, what), getattr(figures, what)
+            self._require(now <= before + more, f"{what} grew from {before} to {now}")
         warm = [f.megabytes for f in self.figures if f.step <= WARM_AFTER]
         if number > WARM_AFTER:
             self._require(
