@@ -127,10 +127,10 @@ def test_a_row_that_cannot_be_used_fails_and_the_others_are_done(run, study, out
     )
     outcome = run(manifest=manifest, exit_code=1)
     assert "1 done, 0 unchanged, 2 failed of 3" in outcome.stdout
-    assert "s0: bad.csv, line 2: Penalty: 'much' is not a number." in outcome.stderr
+    assert "s0: bad.csv, line 2: In the column 'penalty': 'much' is not a number." in outcome.stderr
     rows = rows_of(out)
     assert [row["status"] for row in rows.values()] == ["failed", "failed", "done"]
-    assert "line 3: Destination_landmarks: there is no user" in rows["s1"]["error"]
+    assert "line 3: In the column 'destination_landmarks': there is no user" in rows["s1"]["error"]
     manifest.write_text(manifest.read_text().replace("much", "2"))
     assert "1 done, 1 unchanged, 1 failed" in run(manifest=manifest, exit_code=1).stdout
 

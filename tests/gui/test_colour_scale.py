@@ -6,9 +6,9 @@ import itertools
 
 import numpy as np
 import pytest
-from pinwarp.gui.painted.colour_scale import ColourScale
 
 from pinwarp.core.maps import MapKind
+from pinwarp.gui.style.colour_scale import ColourScale
 
 VALUES = [0.0, 5e-324, 1e-310, 1e-45, 1e-38, 1e-6, 0.5, 1.0, 1 + 1e-15, 3.4e38, 1e39, 1e300]
 RANGES = [(low, high) for low, high in itertools.product(VALUES, VALUES) if low <= high]

@@ -16,6 +16,8 @@ from tests.two_spheres import pairs, two_spheres
 
 from pinwarp.core.landmarks import Side, as_position
 from pinwarp.gui import app
+from pinwarp.gui.painted import marker_layer as painted
+from pinwarp.gui.scene.drawables import FoldedSurface
 from pinwarp.gui.warp import warps as presenter
 from pinwarp.gui.window.faults import LOG, LOG_SIZE, MOST_REPORTS, Faults
 from pinwarp.io.mesh_formats.ply import write_ply
@@ -55,13 +57,11 @@ def kept_work(user, state_folder):
 
 
 def test_a_part_that_folds_as_a_whole_is_drawn_without_a_rim(spheres):
-    folds = spheres.window.viewports[DESTINATION]._folds
-    assert folds.is_shown
-    assert folds._seen.polydata.n_cells == np.count_nonzero(
-        (two_spheres().vertices[two_spheres().faces][:, :, 2] > 90).all(axis=1)
-    )
-    assert folds._rim.actor is None
-    assert folds._hidden.actor is not None
+    view = spheres.window.viewports[DESTINATION]
+    small = (two_spheres().vertices[two_spheres().faces][:, :, 2] > 90).all(axis=1)
+    assert len(view.drawn(FoldedSurface).faces) == np.count_nonzero(small)
+    assert {"folds", "hidden folds"} <= set(view.actors)
+    assert "rim of the folds" not in view.actors
     assert "fold" in spheres.window.parts.findings.fold_note.text()
 
 
@@ -81,17 +81,18 @@ def test_work_on_it_is_kept_marked_and_labelled(spheres, state_folder):
 
 
 def test_a_rim_goes_when_a_fold_without_one_takes_its_place(spheres):
-    folds = spheres.window.viewports[DESTINATION]._folds
+    view = spheres.window.viewports[DESTINATION]
     whole = spheres.session
     # Two neighbours on the large sphere exchange their places: that fold has a rim.
     swapped = edits.move(whole, "p6", DESTINATION, whole.landmark("p10").destination)
     swapped = edits.move(swapped, "p10", DESTINATION, whole.landmark("p6").destination)
     spheres.editor.commit(swapped, "Exchange")
     spheres.settle()
-    assert folds._rim.actor is not None
+    assert "rim of the folds" in view.actors
     spheres.trigger("undo")
-    assert folds.is_shown
-    assert folds._rim.actor is None
+    spheres.settle()
+    assert "folds" in view.actors
+    assert "rim of the folds" not in view.actors
 
 
 @pytest.mark.parametrize(
@@ -127,7 +128,7 @@ def test_landmarks_dragged_far_off_real_bones_fold_them_and_nothing_fails(
             )
         QTest.mouseRelease(viewport, Qt.MouseButton.LeftButton, pos=at.toPoint())
         user.settle()
-        folded += viewport._folds.is_shown
+        folded += viewport.drawn(FoldedSurface) is not None
     assert folded
     assert user.window.actions_by_key["undo"].text().startswith("&Undo Move")
     kept_work(user, state_folder)
@@ -245,13 +246,14 @@ def test_an_overlay_that_cannot_be_drawn_keeps_no_figures_from_being_shown(user,
     heard = []
     user.window.parts.warps.result_changed.connect(lambda *values: heard.append(values[0]))
 
-    def fail(_warps):
+    def fail(_scene):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(user.window.viewports[DESTINATION], "show_overlay", fail)
-    with user.window.faults.taken_over():
+    with user.window.faults.taken_over(), monkeypatch.context() as patched:
+        patched.setattr(user.window.viewports[DESTINATION], "show_scene", fail)
         move_one(user, 1.0)
-    assert user.window.faults.count == 1
+        user.settle()
+    assert len(user.window.faults.reports) == 1
     assert heard[-1].inputs.destination[0] == user.session.pairs[0].destination
 
 
@@ -263,7 +265,7 @@ def test_a_picture_that_fails_half_painted_does_not_end_the_program(user, monkey
         raise ZeroDivisionError
 
     with user.window.faults.taken_over(), monkeypatch.context() as patched:
-        patched.setattr(layer, "_paint_markers", fail)
+        patched.setattr(painted.MarkerLayer, "markers", property(fail))
         for number in range(1, 4):
             layer.update()
             user.qtbot.waitUntil(lambda number=number: user.window.faults.count >= number)
@@ -360,7 +362,7 @@ def test_the_window_opens_without_folders_to_remember_in_and_says_so(nothing_lea
     qtbot.waitUntil(lambda: window.is_settled and bool(window.editor.session.pairs), timeout=30_000)
     window.parts.documents.open_session(app.sample_session())
     qtbot.waitUntil(lambda: window.is_settled, timeout=30_000)
-    window._fill_recent()
+    window.parts.documents.recent_menu.aboutToShow.emit()
     with window.faults.taken_over():
         window.faults.take(ValueError, ValueError("x"), None)
     assert window.faults.count == 1
@@ -375,7 +377,7 @@ def test_settings_of_which_nothing_makes_sense_are_not_followed(
         settings.setValue(key, value)
     settings.sync()
     window = open_window(dialogs, tmp_path, state_folder)
-    window._fill_recent()
+    window.parts.documents.recent_menu.aboutToShow.emit()
     assert [action.text() for action in window.parts.documents.recent_menu.actions()] == [
         "Nothing yet"
     ]

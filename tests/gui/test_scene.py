@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from pinwarp.core.landmarks import Landmark, Role, Side
-from pinwarp.gui.scene.scene import scene_of
+from pinwarp.gui.scene.drawables import Markers
+from pinwarp.gui.scene.scene import Scene
+from pinwarp.gui.scene.session_scene import session_drawables
 from pinwarp.session.session import Session
 from pinwarp.session.view import Selection, ViewState
 from pinwarp.session.warp.solver import WarpInputs, WarpSolver
@@ -19,11 +21,12 @@ def test_a_passenger_that_was_a_pair_is_drawn_only_where_the_warp_carries_it():
     session = Session(landmarks=(*pairs, was_a_pair, came_with_its_bone))
     result = WarpSolver().solve(WarpInputs.of(session))
     for known in (None, result):
-        scene = scene_of(Side.DESTINATION, session, Selection(), ViewState(), known)
-        shown = {x.name: x.position for x in scene.markers if not x.name.startswith("p")}
+        drawn = session_drawables(Side.DESTINATION, session, Selection(), ViewState(), known)
+        markers = Scene(Side.DESTINATION, tuple(drawn)).of(Markers).markers
+        shown = {x.name: x.position for x in markers if not x.name.startswith("p")}
         assert shown.pop("nerve") == (7, 8, 9)
         if known is None:
             assert shown == {}
         else:
             assert np.allclose(shown.pop("muscle"), (2, 4, 6))
-            assert len(scene.markers) == len(pairs) + 2
+            assert len(markers) == len(pairs) + 2

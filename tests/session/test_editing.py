@@ -17,6 +17,7 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, 
 from pinwarp.core.errors import LandmarkError, PinwarpError
 from pinwarp.core.landmarks import Landmark, LandmarkState, Role, Side
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import PenaltyConvention
 from pinwarp.io.clipboard_table import clipboard_text, read_clipboard
 from pinwarp.io.meshes import MeshFile
@@ -314,7 +315,9 @@ def test_a_residual_that_is_only_rounding_is_none():
     missed = np.linalg.norm(result.landmarks - places[:, 1], axis=1)
     assert 0 < missed.max() < 1e-9
     assert not result.residuals.any()
-    stiff = WarpSolver().solve(WarpInputs.of(Session(landmarks=pairs, warping_penalty=1e-3)))
+    stiff = WarpSolver().solve(
+        WarpInputs.of(Session(landmarks=pairs, settings=WarpSettings(penalty=1e-3)))
+    )
     assert stiff.residuals.all()
 
 

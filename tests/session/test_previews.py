@@ -88,7 +88,7 @@ IN_PART = {
 @pytest.mark.parametrize("part", IN_PART)
 @pytest.mark.parametrize("began_whole", [False, True])
 def test_a_preview_of_a_warp_in_part_shows_that_part(session, motion, part, began_whole):
-    part_of = replace(session, **IN_PART[part])
+    part_of = replace(session, settings=replace(session.settings, **IN_PART[part]))
     solver = WarpSolver()
     solver.solve(WarpInputs.of(session if began_whole else part_of))
     after = WarpInputs.of(MOTIONS[motion](part_of))

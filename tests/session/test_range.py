@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.core.test_maps import file_of
 from tests.session.study import bone
-from tests.session.test_maps import file_of
 
 from pinwarp.core.components import Components
 from pinwarp.core.errors import PinwarpError, RangeError

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Unpack
 
 from pinwarp.core.landmarks import Side
 from pinwarp.session.history import History
 from pinwarp.session.session import Session
 from pinwarp.session.signals import isolated
-from pinwarp.session.view import Selection, ViewState
+from pinwarp.session.view import Selection, ViewChanges, ViewState
 
 
 class Editor:
@@ -149,9 +150,9 @@ class Editor:
             self.selection = selection
             self.selection_changed.emit(selection)
 
-    def look(self, **changes: object) -> None:
+    def look(self, **changes: Unpack[ViewChanges]) -> None:
         """Change how the session is looked at; keywords as in :class:`ViewState`."""
-        view = replace(self.view, **changes)  # type: ignore[arg-type]  # keywords of ViewState
+        view = replace(self.view, **changes)
         if view != self.view:
             self.view = view
             self.view_changed.emit(view)

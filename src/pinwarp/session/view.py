@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from types import MappingProxyType
+from typing import TypedDict
 
 from pinwarp.core.landmarks import Side
 from pinwarp.core.maps import MapKind, Range
@@ -114,3 +115,27 @@ class ViewState:
     def map_range(self) -> Range | None:
         """The fixed legend of the map that is shown; None where it follows the map."""
         return None if self.map is None else self.map_ranges.get(self.map)
+
+
+class ViewChanges(TypedDict, total=False):
+    """Some fields of a :class:`ViewState`, which a test compares with it."""
+
+    overlay: bool
+    opacity: float
+    arrows: bool
+    hovered: str | None
+    locked: bool
+    guided: str | None
+    name_pattern: str
+    nudge: float | None
+    link: LinkMode
+    marker_radius: float
+    wireframe: bool
+    section: float | None
+    grid: GridKind
+    grid_share: float
+    curve: bool
+    map: MapKind | None
+    map_opacity: float
+    map_relative: bool
+    map_ranges: Mapping[MapKind, Range]

@@ -197,8 +197,8 @@ class MapPresenter(Capability):
 
     def show_map(self, kind: MapKind | None) -> None:
         """Colour the warped source by something, or by nothing."""
-        shown = {} if kind is None else {"overlay": True}
-        self._editor.look(map=kind, **shown)
+        # What is hidden cannot be seen to be coloured.
+        self._editor.look(map=kind, overlay=kind is not None or self._editor.view.overlay)
 
     def _next_map(self) -> None:
         kinds = [None, *MapKind]
