@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -67,7 +66,7 @@ def looked_at(session):
     """Everything that a window does with a warp; return the problem, if it said one."""
     solver, surveyor = WarpSolver(), Surveyor()
     result = solver.solve(WarpInputs.of(session))
-    penalised = replace(session, warping_penalty=abs(session.landmarks[0].source[0]))
+    penalised = edits.set_penalty(session, abs(session.landmarks[0].source[0]))
     for other in (penalised, *(moved(session, side) for side in Side)):
         followed = solver.preview(WarpInputs.of(other))
         assert followed.problem or np.isfinite(followed.vertices).all()
@@ -94,7 +93,7 @@ def test_whatever_the_scales_a_warp_is_finite_or_refused_in_words():
 def test_whatever_the_scales_what_leaves_is_finite_or_refused_in_words(components):
     left = refused = 0
     for session in scaled_sessions():
-        part = replace(session, components=components)
+        part = edits.set_components(session, components)
         try:
             assert np.isfinite(warped_mesh(part).vertices).all()
             assert np.isfinite(warped_passengers(part)[0].destination).all()
