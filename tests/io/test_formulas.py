@@ -18,7 +18,7 @@ from pinwarp.io.csv_cells import formula_unquoted, numeral
 from pinwarp.io.csv_text import csv_line
 from pinwarp.io.landmark_files import read_landmarks, write_landmarks
 from pinwarp.io.mesh_reference import MeshReference
-from pinwarp.io.report import Figure, write_figures
+from pinwarp.io.report import ReportRow, write_figures
 from pinwarp.io.session_file import SessionRecord, read_session, write_session
 from pinwarp.io.summary_file import COLUMNS, read_summary, write_summary
 
@@ -52,14 +52,14 @@ def assert_harmless(text: str) -> None:
 @each_formula
 def test_in_no_cell_of_a_report(tmp_path, formula):
     path = tmp_path / "a.csv"
-    write_figures(path, [Figure(formula, formula, formula, -1.5, formula)])
-    write_figures(path, [Figure(formula, formula, formula, -1.5, formula)])
+    write_figures(path, [ReportRow(formula, formula, formula, -1.5, formula)])
+    write_figures(path, [ReportRow(formula, formula, formula, -1.5, formula)])
     assert_harmless(path.read_text())
     assert path.read_text().splitlines()[1].split(",")[-2] == "-1.5"
 
 
 def test_an_infinite_figure_is_no_formula(tmp_path):
-    write_figures(tmp_path / "a.csv", [Figure("a", "b", "c", -math.inf)])
+    write_figures(tmp_path / "a.csv", [ReportRow("a", "b", "c", -math.inf)])
     assert "'-inf" in (tmp_path / "a.csv").read_text()
 
 

@@ -10,7 +10,7 @@ from html.parser import HTMLParser
 import pytest
 
 from pinwarp.io.chart import Line, line_chart
-from pinwarp.io.report import Figure, Picture, Report, write_figures, write_report
+from pinwarp.io.report import Picture, Report, ReportRow, write_figures, write_report
 
 LINE = Line("left out", "#000", [0, 1], [1, 2])
 CHART = line_chart([LINE], x_title="x", y_title="y", x_ticks=[(0, "0"), (1, "1")])
@@ -23,9 +23,9 @@ def report(**changes):
         "facts": (("Source mesh", "a.stl"),),
         "findings": ("a & b are 1 mm apart.",),
         "figures": (
-            Figure("Pairs", "fovea", "residual", 0.123456789, "mm"),
-            Figure("Pairs", "=cmd()", "residual", math.nan, "mm"),
-            Figure("Distances", "forward", "mean", 2.0, "mm"),
+            ReportRow("Pairs", "fovea", "residual", 0.123456789, "mm"),
+            ReportRow("Pairs", "=cmd()", "residual", math.nan, "mm"),
+            ReportRow("Distances", "forward", "mean", 2.0, "mm"),
         ),
         "chart": CHART,
     }
@@ -72,7 +72,7 @@ def test_the_curve_is_drawn_inside_the_page(tmp_path):
 
 
 def test_names_cannot_smuggle_tags_into_the_page(tmp_path):
-    evil = Figure("Pairs", "<script>alert(1)</script>", "residual", 1.0)
+    evil = ReportRow("Pairs", "<script>alert(1)</script>", "residual", 1.0)
     page = written(tmp_path, report(figures=(evil,), title="</title><script>", findings=("<b>",)))
     assert "script" not in page.tags
     assert "b" not in page.tags

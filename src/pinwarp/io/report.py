@@ -34,7 +34,7 @@ _CSV_HEADER = ("section", "item", "quantity", "value", "unit")
 
 
 @dataclass(frozen=True)
-class Figure:
+class ReportRow:
     """One number: what it is of, what it says, and its unit; NaN where there is none."""
 
     section: str
@@ -78,7 +78,7 @@ class Report:
     made: str
     facts: tuple[tuple[str, str], ...]
     findings: tuple[str, ...]
-    figures: tuple[Figure, ...]
+    figures: tuple[ReportRow, ...]
     remarks: tuple[tuple[str, str], ...] = ()
     chart: str = ""
 
@@ -103,7 +103,7 @@ def write_report(path: str | Path, report: Report, pictures: Sequence[Picture] =
     Examples
     --------
     >>> import tempfile
-    >>> report = Report("femur", "today", (("Pairs", "16"),), (), (Figure("A", "b", "c", 1.5),))
+    >>> report = Report("femur", "today", (("Pairs", "16"),), (), (ReportRow("A", "b", "c", 1.5),))
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     write_report(Path(folder, "femur.html"), report)
     ...     "<h1>femur</h1>" in Path(folder, "femur.html").read_text()
@@ -146,7 +146,7 @@ def write_report(path: str | Path, report: Report, pictures: Sequence[Picture] =
     write_atomically(path, "<!DOCTYPE html>\n" + _printable(text) + "\n")
 
 
-def write_figures(path: str | Path, figures: Sequence[Figure]) -> None:
+def write_figures(path: str | Path, figures: Sequence[ReportRow]) -> None:
     """Write the numbers of a report as CSV, one a row, with all their digits.
 
     Raises
@@ -158,7 +158,8 @@ def write_figures(path: str | Path, figures: Sequence[Figure]) -> None:
     --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     write_figures(Path(folder, "a.csv"), [Figure("Pairs", "fovea", "residual", 0.25, "mm")])
+    ...     row = ReportRow("Pairs", "fovea", "residual", 0.25, "mm")
+    ...     write_figures(Path(folder, "a.csv"), [row])
     ...     print(Path(folder, "a.csv").read_text(), end="")
     section,item,quantity,value,unit
     Pairs,fovea,residual,0.25,mm
@@ -181,7 +182,7 @@ def _add_facts(body: ET.Element, facts: Sequence[tuple[str, str]]) -> None:
         ET.SubElement(pairs, "dd").text = text
 
 
-def _add_table(body: ET.Element, figures: Sequence[Figure]) -> None:
+def _add_table(body: ET.Element, figures: Sequence[ReportRow]) -> None:
     """Make a table with a row for each item and a column for each quantity."""
     quantities = list(dict.fromkeys(figure.quantity for figure in figures))
     units = {figure.quantity: figure.unit for figure in figures}

@@ -19,7 +19,7 @@ from pinwarp.session.warp.solver import WarpResult
 NO_FIGURE = "–"
 
 
-class Figure(QLabel):
+class FigureLabel(QLabel):
     """A number below its title."""
 
     def __init__(self, title: str, tip: str) -> None:
@@ -39,12 +39,12 @@ class PenaltyFigures(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self.flexibility = Figure("Flexibility", "Share of the non-affine freedom left")
-        self.residual = Figure("RMS residual", "How far the warped landmarks miss theirs")
-        self.left_out = Figure(
+        self.flexibility = FigureLabel("Flexibility", "Share of the non-affine freedom left")
+        self.residual = FigureLabel("RMS residual", "How far the warped landmarks miss theirs")
+        self.left_out = FigureLabel(
             "Leave-one-out", "RMS distance by which each landmark is missed when it is left out"
         )
-        self.pairs = Figure("Pairs", "Landmarks placed on both meshes that take part")
+        self.pairs = FigureLabel("Pairs", "Landmarks placed on both meshes that take part")
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(theme.SPACE)

@@ -15,7 +15,7 @@ from pinwarp.core.quality import PenaltyCurve
 from pinwarp.core.surface_distance import SurfaceComparison
 from pinwarp.io.chart import Line, Mark, line_chart
 from pinwarp.io.meshes import MeshFile
-from pinwarp.io.report import Figure, Report
+from pinwarp.io.report import Report, ReportRow
 from pinwarp.session.judging.quality import Quality, quality_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.setting_words import settings_in_words
@@ -127,25 +127,25 @@ def _mesh_text(session: Session, side: Side) -> str:
     )
 
 
-def _of_pairs(warp: SolvedWarp, quality: Quality) -> list[Figure]:
+def _of_pairs(warp: SolvedWarp, quality: Quality) -> list[ReportRow]:
     unit, left_out = warp.session.unit, quality.left_out
     figures = []
     for row, pair in enumerate(warp.session.pairs):
         residual = float(warp.residuals[row])
-        figures.append(Figure("Pairs", pair.name, "residual", residual, unit))
+        figures.append(ReportRow("Pairs", pair.name, "residual", residual, unit))
         if left_out is not None:
             missed, unusual = float(left_out.distances[row]), float(left_out.standardised[row])
-            figures.append(Figure("Pairs", pair.name, "left out", missed, unit))
-            figures.append(Figure("Pairs", pair.name, "standardised", unusual))
+            figures.append(ReportRow("Pairs", pair.name, "left out", missed, unit))
+            figures.append(ReportRow("Pairs", pair.name, "standardised", unusual))
         for side in Side:
             for axis, number in zip(_AXES, pair.position(side) or (), strict=False):
-                figures.append(Figure("Pairs", pair.name, f"{side.value} {axis}", number, unit))
+                figures.append(ReportRow("Pairs", pair.name, f"{side.value} {axis}", number, unit))
     return figures
 
 
 def _of_surfaces(
     compared: SurfaceComparison | None, folds: Folds | None, unit: str
-) -> list[Figure]:
+) -> list[ReportRow]:
     figures = []
     if compared is not None:
         for item, found in (
@@ -158,15 +158,15 @@ def _of_surfaces(
                 ("95 % are below", found.percentile_95),
                 ("maximum", found.maximum),
             ):
-                figures.append(Figure("Distances", item, quantity, value, unit))
+                figures.append(ReportRow("Distances", item, quantity, value, unit))
     if folds is not None:
-        figures.append(Figure("Folds", "vertices", "folded", folds.count))
+        figures.append(ReportRow("Folds", "vertices", "folded", folds.count))
     return figures
 
 
-def _of_warp(quality: Quality, unit: str) -> list[Figure]:
+def _of_warp(quality: Quality, unit: str) -> list[ReportRow]:
     parts = quality.affine
-    figures = [Figure("Affine part", "rotation", "angle", parts.angle, "°")]
+    figures = [ReportRow("Affine part", "rotation", "angle", parts.angle, "°")]
     for item, values, what in (
         ("translation", parts.translation, unit),
         ("rotation axis", parts.axis, ""),
@@ -174,11 +174,11 @@ def _of_warp(quality: Quality, unit: str) -> list[Figure]:
         ("principal stretch", parts.principal, ""),
     ):
         for axis, value in zip(_AXES, values.tolist(), strict=True):
-            figures.append(Figure("Affine part", item, axis, value, what))
+            figures.append(ReportRow("Affine part", item, axis, value, what))
     for axes, value in zip(("xy", "xz", "yz"), parts.shears.tolist(), strict=True):
-        figures.append(Figure("Affine part", "shear", axes, value))
+        figures.append(ReportRow("Affine part", "shear", axes, value))
     for axis, value in zip(_AXES, quality.energy.tolist(), strict=True):
-        figures.append(Figure("Bending energy", "warp", axis, value, unit))
+        figures.append(ReportRow("Bending energy", "warp", axis, value, unit))
     return figures
 
 
