@@ -51,7 +51,7 @@ def play(nothing_leaks, qtbot, tmp_path, state_folder):
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_nothing_breaks_on_the_sample_whatever_a_monkey_does(play, seed):
-    play(lambda window: window.open_sample(), seed)
+    play(lambda window: window.parts.documents.open_sample(), seed)
 
 
 @pytest.mark.parametrize("seed", [int(SEED)] if SEED else [5])

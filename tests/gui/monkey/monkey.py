@@ -160,8 +160,7 @@ class Monkey:
 
     def _unsettled(self) -> str:
         window = self.window
-        parts = ("presenter", "quality", "tuning", "grid", "maps")
-        busy = [name for name in parts if not getattr(window, name).is_settled]
+        busy = [name for name, part in vars(window.parts).items() if not part.is_settled]
         busy += [name for name in ("jobs", "stepped") if not getattr(window, name).is_idle]
         asking = QApplication.activePopupWidget() or QApplication.activeModalWidget()
         return f"{busy}, asked by {asking}"

@@ -43,8 +43,8 @@ class MainWindow(WindowFrame):
         self.editor = editor = Editor()
         self.parts = Parts(self, editor, dialogs or WindowDialogs(self), settings, state_folder)
         quit_action = Action("quit", "&Quit", self.close, at="File.51", keys="Ctrl+Q")
-        self._actions = [action for part in self.parts for action in part.actions]
-        self.furnish(list(self.parts), [*self._actions, quit_action])
+        self._actions = [*(action for part in self.parts for action in part.actions), quit_action]
+        self.furnish(list(self.parts), self._actions)
         self.scenes.show_from(*self.parts)
         self._signals = (
             editor.session_changed,
