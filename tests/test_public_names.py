@@ -24,6 +24,7 @@ NAMES = [
     "Session",
     "Side",
     "TPSCoefficients3D",
+    "WarpSettings",
     "__version__",
     "check",
     "compare_surfaces",

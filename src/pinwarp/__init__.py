@@ -4,8 +4,8 @@ Everything a script needs is here; what a name stands on is loaded when it is fi
 only with meshes that need it, Qt never.
 
 Sessions
-    :class:`Session`, :func:`read_session`, :func:`write_session`, :func:`warped_mesh`,
-    :func:`warped_passengers`, :func:`check`, :class:`Check`
+    :class:`Session`, :class:`WarpSettings`, :func:`read_session`, :func:`write_session`,
+    :func:`warped_mesh`, :func:`warped_passengers`, :func:`check`, :class:`Check`
 Landmarks and meshes
     :class:`Landmark`, :class:`Side`, :class:`Role`, :func:`read_landmarks`,
     :func:`write_landmarks`, :class:`Mesh`, :class:`MeshFile`, :func:`read_mesh`,
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from pinwarp.core.landmarks import Landmark, Role, Side
     from pinwarp.core.mesh import Mesh
     from pinwarp.core.quality import leave_one_out, penalty_curve
+    from pinwarp.core.settings import WarpSettings
     from pinwarp.core.surface_distance import compare_surfaces
     from pinwarp.io.landmark_files import read_landmarks, write_landmarks
     from pinwarp.io.meshes import MeshFile, read_mesh, write_mesh
@@ -60,6 +61,7 @@ __all__ = [
     "Session",
     "Side",
     "TPSCoefficients3D",
+    "WarpSettings",
     "__version__",
     "check",
     "compare_surfaces",
@@ -84,6 +86,7 @@ _HOMES = {
     "core.landmarks": ("Landmark", "Role", "Side"),
     "core.mesh": ("Mesh",),
     "core.quality": ("leave_one_out", "penalty_curve"),
+    "core.settings": ("WarpSettings",),
     "core.surface_distance": ("compare_surfaces",),
     "io.landmark_files": ("read_landmarks", "write_landmarks"),
     "io.meshes": ("MeshFile", "read_mesh", "write_mesh"),

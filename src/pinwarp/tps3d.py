@@ -56,28 +56,68 @@ scipy's ``RBFInterpolator(kernel="linear", degree=1, smoothing=s)``, Morpho (R),
 (:class:`~pinwarp.core.errors.PoleWarning`) above a tenth of the first pole.
 
 The penalty is a length in the unit of the mesh: divide it by 1000 when millimetres become metres.
+
+Coming from OPynSim
+-------------------
+Compared with OPynSim 0.0.8. At penalty 0 both make the same warp, to a millionth of the bone:
+OPynSim rounds the distances to single precision, here all is double. What differs:
+
+- **The default convention of the penalty.** Above penalty 0 ``solve_coefficients`` solves
+  ``K - s I`` unless it is told otherwise (see above). OPynSim's numbers come with
+  ``convention="opynsim"``, and near its poles with a warning.
+- One to three landmarks, or all in a line or a plane, leave the affine part open. OPynSim takes
+  the smallest one, which flattens whatever else is warped; here it is taken from a similarity.
+- What has no answer is refused, not answered with NaN: coordinates that are not finite, that are
+  masked, or beyond 1e150; a negative penalty or NaN; a point that is not finite. An infinite
+  penalty is the affine fit there is, and NaN in OPynSim.
+- Landmarks at one place with different destinations are met half way by both; here with a
+  :class:`~pinwarp.core.errors.ConflictingLandmarksWarning`. Nearly planar landmarks are warned
+  about, too. ``warnings.simplefilter("ignore", pinwarp.PinwarpWarning)`` silences all of these.
+- Lists, tuples and data frames are accepted like arrays. ``True`` is no penalty and truth values
+  are no coordinates, which OPynSim takes for 1 and 0.
+- Errors say in words what is wrong and in which row. They are all
+  :class:`~pinwarp.core.errors.PinwarpError`, mostly ``ValueError``, and those that OPynSim raises
+  are of its types as well: ``RuntimeError`` when the counts differ or there are no landmarks,
+  ``TypeError`` for another shape, for what is not numbers, and for a penalty that is none.
+- ``a1`` ... ``a4`` are copies in both: ``c.a1[0] += 1`` changes the copy, never the warp. To change
+  a warp, make another: ``dataclasses.replace(c, a1=c.a1 + [1, 0, 0])``.
+- Coefficients are equal by value in both. Here ``hash(c)`` goes by value too (by identity there),
+  and they are unequal to anything else (``TypeError`` there).
+- They can be made by hand, copied and pickled, show their ``weights``, ``source_landmarks``,
+  ``warping_penalty`` and ``convention``, and warp many points at once: ``warp_points(points)``
+  does in one call what takes a loop over ``warp_point`` there, and a mesh in milliseconds.
+- ``repr(c)`` reads differently, and the module is ``pinwarp.tps3d``.
 """
 
 from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from typing import Final
+from functools import cached_property
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pinwarp.core import small
 from pinwarp.core.errors import (
     ConflictingLandmarksWarning,
-    LandmarkError,
+    LandmarkCountError,
+    LandmarkTypeError,
     NearlyPlanarWarning,
     PinwarpWarning,
     PoleWarning,
 )
 from pinwarp.core.factor import factorise
 from pinwarp.core.findings import FindingKind
-from pinwarp.core.kernel import evaluate
-from pinwarp.core.spline import PenaltyConvention, Spline, solve
+from pinwarp.core.positions import as_numbers, as_positions
+from pinwarp.core.spline import (
+    PenaltyConvention,
+    Spline,
+    check_convention,
+    check_penalty,
+    solve,
+)
 
 __all__ = ["PenaltyConvention", "TPSCoefficients3D", "solve_coefficients"]
 
@@ -89,6 +129,26 @@ _WARNINGS: Final[dict[FindingKind, type[PinwarpWarning]]] = {
 }
 
 
+_ARRAYS: Final = ("a1", "a2", "a3", "a4", "weights", "source_landmarks")
+
+
+class _Term:
+    """An affine coefficient: kept once, handed out as a copy that scripts may change."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+        self.__doc__ = f"The affine coefficient {name}, (3,) float64: a copy."
+
+    def __get__(self, instance: Any, owner: type | None = None) -> NDArray[np.float64]:
+        if instance is None:
+            # For a dataclass this is a field without a default.
+            raise AttributeError(self._name)
+        return np.array(instance.__dict__[self._name])
+
+    def __set__(self, instance: Any, value: ArrayLike) -> None:
+        instance.__dict__[self._name] = value
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class TPSCoefficients3D:
     """The coefficients of a solved thin-plate spline; made by :func:`solve_coefficients`.
@@ -96,15 +156,17 @@ class TPSCoefficients3D:
     Attributes
     ----------
     a1, a2, a3, a4 : (3,) float64
-        The constant term (mesh units) and the coefficients of x, y and z.
+        The constant term (mesh units) and the coefficients of x, y and z; each time a copy.
     weights : (n, 3) float64
-        ``w_i``, for ``U = +r``.
+        ``w_i``, for ``U = +r``; read-only.
     source_landmarks : (n, 3) float64
-        ``u_i``, in mesh units.
+        ``u_i``, in mesh units; read-only.
     warping_penalty : float
         A length in mesh units.
     convention : PenaltyConvention
         The equation that the penalty entered.
+
+    Two are equal when all of these are, and then have the same hash.
 
     Examples
     --------
@@ -113,20 +175,43 @@ class TPSCoefficients3D:
     [[5.0, 0.0, 1.0]]
     """
 
-    a1: NDArray[np.float64]
-    a2: NDArray[np.float64]
-    a3: NDArray[np.float64]
-    a4: NDArray[np.float64]
-    weights: NDArray[np.float64]
-    source_landmarks: NDArray[np.float64]
+    a1: NDArray[np.float64] = _Term()  # type: ignore[assignment]
+    a2: NDArray[np.float64] = _Term()  # type: ignore[assignment]
+    a3: NDArray[np.float64] = _Term()  # type: ignore[assignment]
+    a4: NDArray[np.float64] = _Term()  # type: ignore[assignment]
+    weights: NDArray[np.float64]  # type: ignore[misc]  # the terms above are no defaults
+    source_landmarks: NDArray[np.float64]  # type: ignore[misc]
     warping_penalty: float = 0.0
     convention: PenaltyConvention = PenaltyConvention.REGULARISING
 
     def __post_init__(self) -> None:
-        for name in ("a1", "a2", "a3", "a4", "weights", "source_landmarks"):
-            array = np.array(getattr(self, name), dtype=np.float64)
+        for name in ("a1", "a2", "a3", "a4"):
+            term = as_numbers(self.__dict__[name], f"{name} coefficient")
+            if term.shape != (3,):
+                raise LandmarkTypeError(f"{name} has the shape {term.shape} instead of (3,).")
+            object.__setattr__(self, name, term)
+        for name, what in (("weights", "weight"), ("source_landmarks", "source landmark")):
+            array = as_positions(getattr(self, name), what)
             array.setflags(write=False)
             object.__setattr__(self, name, array)
+        if len(self.weights) != len(self.source_landmarks):
+            raise LandmarkCountError(
+                f"There are {len(self.weights)} weights for {len(self.source_landmarks)} "
+                "source landmarks."
+            )
+        object.__setattr__(self, "warping_penalty", check_penalty(self.warping_penalty))
+        object.__setattr__(self, "convention", check_convention(self.convention))
+
+    @cached_property
+    def _table(self) -> NDArray[np.float64]:
+        return small.table_of(self._spline)
+
+    @property
+    def _spline(self) -> Spline:
+        affine = np.vstack([self.a1, self.a2, self.a3, self.a4])
+        return Spline(
+            self.source_landmarks, self.weights, affine, self.warping_penalty, self.convention
+        )
 
     def warp_point(self, point: ArrayLike) -> NDArray[np.float64]:
         """Warp one point.
@@ -152,10 +237,11 @@ class TPSCoefficients3D:
         >>> moved.warp_point([10, 10, 10]).tolist()
         [11.0, 12.0, 13.0]
         """
-        array = np.asarray(point, dtype=np.float64)
+        array = point if small.is_point(point) else as_numbers(point, "point", fresh=False)
         if array.shape != (3,):
-            raise LandmarkError(f"The point has the shape {array.shape} instead of (3,).")
-        return np.asarray(self.warp_points(array[None])[0])
+            raise LandmarkTypeError(f"The point has the shape {array.shape} instead of (3,).")
+        warped = small.warp_point(self._table, array)
+        return np.array(self.warp_points(array[None])[0]) if warped is None else warped
 
     def warp_points(self, points: ArrayLike) -> NDArray[np.float64]:
         """Warp (m, 3) points in double precision; see :meth:`warp_point`.
@@ -166,11 +252,7 @@ class TPSCoefficients3D:
         >>> moved.warp_points([[0, 0, 0], [1, 1, 1]]).tolist()
         [[1.0, 2.0, 3.0], [2.0, 3.0, 4.0]]
         """
-        affine = np.vstack([self.a1, self.a2, self.a3, self.a4])
-        warped = evaluate(self.source_landmarks, self.weights, affine, points)
-        if not np.isfinite(warped).all():
-            raise LandmarkError("The points are too far from the landmarks to warp.")
-        return warped
+        return self._spline.evaluate(points)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, TPSCoefficients3D):
@@ -178,13 +260,14 @@ class TPSCoefficients3D:
         return (
             self.warping_penalty == other.warping_penalty
             and self.convention == other.convention
-            and all(
-                np.array_equal(getattr(self, name), getattr(other, name))
-                for name in ("a1", "a2", "a3", "a4", "weights", "source_landmarks")
-            )
+            and all(np.array_equal(getattr(self, name), getattr(other, name)) for name in _ARRAYS)
         )
 
-    __hash__ = None  # type: ignore[assignment]  # equal by arrays, which have no hash
+    def __hash__(self) -> int:
+        arrays = (getattr(self, name) for name in _ARRAYS)
+        # Adding 0 makes -0 and 0, which are equal, the same bytes.
+        values = tuple((array + 0.0).tobytes() for array in arrays)
+        return hash((self.warping_penalty, self.convention, values))
 
     def __repr__(self) -> str:
         terms = ", ".join(f"{name} = {getattr(self, name)}" for name in ("a1", "a2", "a3", "a4"))
@@ -199,7 +282,7 @@ def solve_coefficients(
     destination_landmarks: ArrayLike,
     *,
     warping_penalty: float = 0.0,
-    convention: PenaltyConvention = PenaltyConvention.REGULARISING,
+    convention: PenaltyConvention | str = PenaltyConvention.REGULARISING,
 ) -> TPSCoefficients3D:
     """Solve the spline that takes source landmarks to destination landmarks.
 
@@ -214,7 +297,8 @@ def solve_coefficients(
     warping_penalty
         A length in mesh units, 0 or more: 0 meets every landmark, infinity is the affine fit.
     convention
-        The equation that the penalty enters; see the module's documentation.
+        The equation that the penalty enters, or its value, such as ``"opynsim"``; see the
+        module's documentation.
 
     Returns
     -------
@@ -223,9 +307,10 @@ def solve_coefficients(
     Raises
     ------
     LandmarkError
-        When the counts differ, there are none, or a row is not finite; the message names the row.
+        When the counts differ, there are none, a row is masked or not finite (the message names
+        it), or they are not numbers.
     PenaltyError
-        When the penalty is negative or NaN.
+        When the penalty is negative or no number, or there is no such convention.
     SingularSystemError
         When an OPYNSIM penalty lies on a pole.
 
@@ -249,14 +334,18 @@ def solve_coefficients(
     >>> bool(abs(affine_fit.weights).max() == 0)
     True
     """
-    spline = solve(factorise(source_landmarks), destination_landmarks, warping_penalty, convention)
+    penalty, kind = check_penalty(warping_penalty), check_convention(convention)
+    # One pass where there is nothing to refuse: numpy takes longer to be called than to reckon.
+    spline = small.solve_ordinary(source_landmarks, destination_landmarks, penalty, kind)
+    if spline is None:
+        spline = solve(factorise(source_landmarks), destination_landmarks, penalty, kind)
     for finding in spline.findings:
         warnings.warn(finding.describe(), _WARNINGS[finding.kind], stacklevel=2)
     return coefficients_of(spline)
 
 
 def coefficients_of(spline: Spline) -> TPSCoefficients3D:
-    """Return a solved spline's coefficients under their documented names.
+    """Return a solved spline's coefficients under their documented names; both share the arrays.
 
     Examples
     --------
@@ -264,7 +353,19 @@ def coefficients_of(spline: Spline) -> TPSCoefficients3D:
     >>> coefficients_of(identity()).a2.tolist()
     [1.0, 0.0, 0.0]
     """
+    made = object.__new__(TPSCoefficients3D)
     a1, a2, a3, a4 = spline.affine
-    return TPSCoefficients3D(
-        a1, a2, a3, a4, spline.weights, spline.source, spline.penalty, spline.convention
+    spline.weights.setflags(write=False)
+    spline.source.setflags(write=False)
+    # What was solved needs no second look, which would take longer than a small solve.
+    made.__dict__.update(
+        a1=a1,
+        a2=a2,
+        a3=a3,
+        a4=a4,
+        weights=spline.weights,
+        source_landmarks=spline.source,
+        warping_penalty=spline.penalty,
+        convention=spline.convention,
     )
+    return made

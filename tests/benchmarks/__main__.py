@@ -7,6 +7,7 @@ import itertools
 import json
 import os
 import platform
+import warnings
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from rich.table import Table
 from threadpoolctl import threadpool_limits
 
 from pinwarp.core import kernel
+from pinwarp.core.errors import PinwarpWarning
 
 PACKAGES = ("pinwarp", "numpy", "scipy", "numba", "vtk", "pyvista", "PySide6-Essentials")
 
@@ -73,13 +75,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="make bench")
     parser.add_argument("--json", type=Path, help="write the figures to this file as well")
     parser.add_argument(
-        "--only", nargs="*", help="solve, evaluate, live, quality, memory, frames, refresh"
+        "--only", nargs="*", help="solve, point, evaluate, live, quality, memory, frames, refresh"
     )
     options = parser.parse_args()
-    from tests.benchmarks import core, frames, quality
+    from tests.benchmarks import core, frames, peers, quality
 
     parts = {
         "solve": ("One solve", core.solving),
+        "point": ("One point in a call", core.warping_points),
         "evaluate": ("Evaluation at all vertices", core.evaluating),
         "live": ("What the hand feels, against the fastest peer's solve + evaluate", core.living),
         "quality": ("Is this warp right?", quality.judging),
@@ -93,7 +96,10 @@ def main() -> None:
         f"{about['processor']}, {about['cores']} cores, Python {about['python']}; ", end=""
     )
     console.print(", ".join(f"{name} {number}" for name, number in about["versions"].items()))
+    for name in peers.ABSENT:
+        console.print(f"Not compared with {name}, which is not installed (Python 3.12 or later).")
     kernel.warm_up()
+    warnings.simplefilter("ignore", PinwarpWarning)
     figures: dict[str, Any] = {"about": about}
     # One BLAS thread for all: on few cores more make every one of them slower at these sizes.
     with threadpool_limits(limits=1, user_api="blas"):

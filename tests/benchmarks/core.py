@@ -6,16 +6,18 @@ import itertools
 import json
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from pinwarp.core import small
 from pinwarp.core.factor import factorise
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.core.live import PreviewPoints, preview
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import solve
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session import edits
@@ -32,13 +34,40 @@ LIVE_SIZES = ((100_000, 50), (100_000, 200), (1_000_000, 200), (1_000_000, 1000)
 
 def solving() -> Iterator[Row]:
     """One solve at penalty 0, from arrays to coefficients."""
-    for count in (10, 50, 200, 1000, 5000):
+    small.warm_up()
+    for count in (10, 20, 50, 100, 200, 1000, 5000):
         source, destination = landmark_pairs(count)
-        ways = {"pinwarp": lambda s=source, d=destination: solve(factorise(s), d)}
+        ways = {"pinwarp": lambda s=source, d=destination: solve_coefficients(s, d)}
         for peer in PEERS:
             if count <= peer.most_landmarks:
                 ways[peer.name] = lambda p=peer, s=source, d=destination: p.solve(s, d)
         yield {"what": "solve", "pairs": count} | in_turn(ways)
+
+
+def warping_points() -> Iterator[Row]:
+    """One point in a call, as scripts for OPynSim must; a hundred calls for a time."""
+    small.warm_up()
+    for count in (10, 50, 200):
+        source, destination = landmark_pairs(count)
+        points = surface_points(100)
+        ways = {"pinwarp": _each(solve_coefficients(source, destination).warp_point, points)}
+        for peer in PEERS:
+            if count <= peer.most_landmarks and peer.points_in_a_loop:
+                ways[peer.name] = _each(peer.solve(source, destination).one, points)
+            elif count <= peer.most_landmarks:
+                evaluate = peer.solve(source, destination)
+                ways[peer.name] = _each(lambda p, e=evaluate: e(p[None]), points)
+        times = in_turn(ways, 1.0)
+        row = {"what": "warp_point", "pairs": count}
+        yield row | {name: time / len(points) for name, time in times.items()}
+
+
+def _each(warp: Callable[[np.ndarray], object], points: np.ndarray) -> Callable[[], None]:
+    def all_of_them() -> None:
+        for point in points:
+            warp(point)
+
+    return all_of_them
 
 
 def evaluating() -> Iterator[Row]:
@@ -69,7 +98,7 @@ def session_of(vertices: int, count: int) -> Session:
         for i, (u, v) in enumerate(zip(source.tolist(), destination.tolist(), strict=True))
     )
     file = MeshFile(Path("/benchmark.ply"), mesh, "", ())
-    return Session(file, landmarks=landmarks, warping_penalty=1.0)
+    return Session(file, landmarks=landmarks, settings=WarpSettings(1.0))
 
 
 class Hand:

@@ -49,7 +49,9 @@ def refreshing() -> Iterator[dict[str, Any]]:
         window = _window(Path(folder), 10_000, pairs=200)
         waits, gaps = [], []
         arrived: list[float] = []
-        window.quality.quality_changed.connect(lambda _quality: arrived.append(time.perf_counter()))
+        window.parts.quality.quality_changed.connect(
+            lambda _quality: arrived.append(time.perf_counter())
+        )
         try:
             widget, path = _landmark_drag(window)
             for turn in range(9):
@@ -97,8 +99,8 @@ def _window(folder: Path, triangles: int, pairs: int = 50) -> MainWindow:
     window = MainWindow(settings, PrintedMessages())
     window.resize(1280, 800)
     window.show()
-    window.documents.open_mesh(Side.SOURCE, source)
-    window.documents.open_mesh(Side.DESTINATION, destination)
+    window.parts.documents.open_mesh(Side.SOURCE, source)
+    window.parts.documents.open_mesh(Side.DESTINATION, destination)
     _settle(window)
     places = np.asarray(bone.points, dtype=float)[
         np.random.default_rng(0).choice(bone.n_points, pairs, replace=False)
@@ -141,7 +143,7 @@ Motion = tuple[QWidget, Callable[[float], QPointF]]
 
 
 def _slider_sweep(window: MainWindow) -> Motion:
-    slider = window.panel.slider
+    slider = window.parts.penalty.panel.slider
     reach = slider.width() - 24
     return slider, lambda t: QPointF(8 + reach * (0.5 - 0.5 * np.cos(2 * t)), slider.height() / 2)
 

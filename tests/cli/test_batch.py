@@ -19,6 +19,7 @@ from pinwarp.io.landmark_files import read_landmarks
 from pinwarp.io.meshes import read_mesh
 from pinwarp.session.keeping.files import read_session, write_session
 from pinwarp.session.session import Session
+from pinwarp.session.study.workers import WorkEnded
 
 
 @pytest.fixture
@@ -119,6 +120,30 @@ def test_a_manifest_with_a_mistake_is_refused_with_its_line(run, study, out):
     assert not out.exists()
 
 
+def test_a_row_that_cannot_be_used_fails_and_the_others_are_done(run, study, out):
+    manifest = study / "bad.csv"
+    manifest.write_text(
+        "name,destination_landmarks,penalty\ns0,s0.csv,much\ns1,~nosuchuser/x.csv,\ns2,s2.csv,\n"
+    )
+    outcome = run(manifest=manifest, exit_code=1)
+    assert "1 done, 0 unchanged, 2 failed of 3" in outcome.stdout
+    assert "s0: bad.csv, line 2: In the column 'penalty': 'much' is not a number." in outcome.stderr
+    rows = rows_of(out)
+    assert [row["status"] for row in rows.values()] == ["failed", "failed", "done"]
+    assert "line 3: In the column 'destination_landmarks': there is no user" in rows["s1"]["error"]
+    manifest.write_text(manifest.read_text().replace("much", "2"))
+    assert "1 done, 1 unchanged, 1 failed" in run(manifest=manifest, exit_code=1).stdout
+
+
+def test_a_name_that_only_looks_like_one_of_the_source_is_told(run, study, out):
+    marks = study / "s0.csv"
+    lines = marks.read_text().splitlines()
+    name = lines[1].partition(",")[0]
+    marks.write_text("\n".join([lines[0], "\u200b" + lines[1], *lines[2:]]) + "\n")
+    run()
+    assert f"'{name}' and '\\u200b{name}' look alike" in rows_of(out)["s0"]["notes"]
+
+
 def test_a_subject_that_fails_is_told_and_the_others_are_done(run, study, out):
     (study / "s0.csv").unlink()
     (study / "s1.stl").write_text("nonsense")
@@ -130,6 +155,56 @@ def test_a_subject_that_fails_is_told_and_the_others_are_done(run, study, out):
     assert "line 2: The file" in rows["s0"]["error"]
     assert rows["s1"]["error"].startswith("s1.stl: ")
     assert not (out / "s1_warped.ply").exists()
+
+
+def test_a_cell_that_is_no_number_fails_its_row_and_names_its_column(run, study, out):
+    manifest = study / "own.csv"
+    head = "name,destination_landmarks,penalty"
+    manifest.write_text(f"{head}\ns0,s0.csv,1\ns1,s1.csv,0.5\n")
+    run(manifest=manifest)
+    # Its outputs of before are there, and it is not unchanged all the same.
+    manifest.write_text(f"{head}\ns0,s0.csv,much\ns1,s1.csv,0.5\n")
+    outcome = run(manifest=manifest, exit_code=1)
+    words = "own.csv, line 2: In the column 'penalty': 'much' is not a number."
+    assert outcome.stderr == f"pinwarp: s0: {words}\n"
+    assert "0 done, 1 unchanged, 1 failed of 2" in outcome.stdout
+    rows = rows_of(out)
+    assert (rows["s0"]["status"], rows["s0"]["error"]) == ("failed", words)
+    assert rows["s1"]["status"] == "done"
+
+
+def test_what_was_done_stays_when_the_cluster_is_lost(pinwarp_command, study, out, monkeypatch):
+    def lost_after_one(function, tasks):
+        yield tasks[0], function(tasks[0])
+        raise WorkEnded("The scheduler is gone.")
+
+    arguments = ("batch", study / "study.csv", "-o", out, "--session", study / "study.pinwarp.csv")
+    with monkeypatch.context() as patch:
+        patch.setattr("pinwarp.cli.batch.runner_of", lambda *_: lost_after_one)
+        outcome = pinwarp_command(*arguments, "--scheduler", "tcp://node7:8786", exit_code=3)
+    assert outcome.stdout.startswith("1 done, 0 unchanged, 0 failed of 3: see ")
+    assert outcome.stderr == (
+        "pinwarp: The scheduler is gone. What was done stays: "
+        "the same command goes on from there.\n"
+    )
+    assert list(rows_of(out)) == ["s0"]
+    assert "2 done, 1 unchanged" in pinwarp_command(*arguments, "--jobs", 1).stdout
+
+
+def test_a_malformed_address_is_refused_before_anything_is_read_or_written(pinwarp_command, out):
+    outcome = pinwarp_command(
+        "batch", "gone.csv", "-o", out, "--scheduler", "tcp://node7", exit_code=2
+    )
+    assert outcome.stderr.startswith("pinwarp: 'tcp://node7' is no address of a scheduler: ")
+    assert not out.exists()
+
+
+def test_an_interruption_that_is_meant_ends_in_words(run, monkeypatch):
+    def interrupt(*_arguments, **_options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("pinwarp.session.study.batch.run", interrupt)
+    assert run(exit_code=130).stderr == "pinwarp: Interrupted.\n"
 
 
 def test_a_second_run_does_only_what_failed(run, study, out):
@@ -221,6 +296,14 @@ def test_landmarks_without_a_counterpart_are_told_in_the_summary(run, study, out
     assert "1 landmark is not in s0.csv: p7." in row["notes"]
     assert "1 landmark is not on the source: unheard_of." in row["notes"]
     assert "line 10 was skipped" in row["notes"]
+
+
+def test_a_passenger_in_the_subjects_own_file_is_no_unknown_landmark(run, study, out):
+    path = study / "s0.csv"
+    path.write_text(path.read_text().rstrip("\n") + "\nmuscle,1,2,3\n")
+    run()
+    row = rows_of(out)["s0"]
+    assert (row["pairs"], row["notes"]) == ("8", "")
 
 
 def test_a_subject_without_any_known_name_fails_with_both_lists(run, study, out):

@@ -10,6 +10,7 @@ import pytest
 
 from pinwarp.core.landmarks import Landmark, as_position
 from pinwarp.io.meshes import read_mesh
+from pinwarp.session import edits
 from pinwarp.session.keeping.files import read_session, write_session
 from pinwarp.session.session import Session
 
@@ -20,6 +21,7 @@ KEYS = {
     "penalty_convention": str,
     "components": str,
     "blend": float,
+    "planar": bool,
     "flagged": bool,
     "rms_residual": float,
     "rms_leave_one_out": float,
@@ -94,7 +96,7 @@ def test_swapped_pairs_are_flagged_and_fail_only_a_strict_check(pinwarp_command,
 
 
 def test_the_affine_fit_has_an_infinite_penalty_that_json_can_say(pinwarp_command, session):
-    write_session(session, replace(read_session(session), warping_penalty=np.inf))
+    write_session(session, edits.set_penalty(read_session(session), np.inf))
     assert figures(pinwarp_command, session)["warping_penalty"] == "inf"
 
 

@@ -16,7 +16,7 @@ from pinwarp.io.manifest import read_manifest
 from pinwarp.io.summary_file import read_summary
 from pinwarp.session.keeping.files import read_session
 from pinwarp.session.study import batch
-from pinwarp.session.study.workers import on_cluster
+from pinwarp.session.study.cluster import on_cluster
 
 distributed = pytest.importorskip("distributed")
 

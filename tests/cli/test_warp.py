@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from tests.session.study import bone, shape
 
+from pinwarp.core.components import Components
 from pinwarp.core.landmarks import Landmark, Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.io.landmark_files import read_landmarks, write_landmarks
@@ -15,7 +16,8 @@ from pinwarp.io.meshes import read_mesh, write_mesh
 from pinwarp.session import edits
 from pinwarp.session.keeping.files import read_session, write_session
 from pinwarp.session.mesh_units import scale_side
-from pinwarp.session.outputs.exports import session_spline, warped_mesh
+from pinwarp.session.outputs.exports import warped_mesh
+from pinwarp.session.warp.solved import solved
 
 
 @pytest.fixture
@@ -44,7 +46,7 @@ def test_several_files_go_into_a_folder_in_their_own_formats(pinwarp_command, se
     marks = tmp_path / "stations.landmarks.csv"
     write_landmarks(marks, [Landmark("a", (1, 2, 3)), Landmark("b", (4, 5, 6))], Side.SOURCE)
     pinwarp_command("warp", session, other, marks, "--out", tmp_path / "out")
-    spline = session_spline(read_session(session))
+    spline = solved(read_session(session)).applied
     stations = read_landmarks(tmp_path / "out" / "stations_warped.landmarks.csv", Side.DESTINATION)
     assert stations.names == ("a", "b")
     assert stations.landmarks[1].destination == as_position(spline.evaluate([[4, 5, 6]])[0])
@@ -63,7 +65,7 @@ def test_options_go_before_what_the_session_says(pinwarp_command, session, tmp_p
     opened = read_session(session)
     for name, options, changed in (
         ("a", ["--penalty", "inf"], edits.set_penalty(opened, np.inf)),
-        ("b", ["--components", "rigid"], replace(opened, components="rigid")),
+        ("b", ["--components", "rigid"], edits.set_components(opened, Components.RIGID)),
         ("c", ["--blend", "0.5"], edits.set_blend(opened, 0.5)),
     ):
         out = tmp_path / f"{name}.ply"
@@ -187,7 +189,7 @@ def test_landmarks_in_ras_keep_their_frame_in_slicers_files(pinwarp_command, ses
     outcome = pinwarp_command("warp", session, marks, "-o", tmp_path / "out.fcsv")
     assert "in RAS and were taken as they are" in outcome.stderr
     reading = read_landmarks(tmp_path / "out.fcsv", Side.SOURCE)
-    x, y, z = session_spline(read_session(session)).evaluate([[1, 2, 3]])[0]
+    x, y, z = solved(read_session(session)).applied.evaluate([[1, 2, 3]])[0]
     assert reading.frame == "LPS"
     assert reading.landmarks[0].source == pytest.approx((-x, -y, z))
 

@@ -15,6 +15,7 @@ from tests.core.femur import femur_landmarks, femur_meshes
 from pinwarp.core.landmarks import Landmark, Side, as_position
 from pinwarp.core.maps import MapKind, automatic_range, overall_size, volume_map
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import PenaltyConvention, factorise, solve
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session import edits
@@ -58,7 +59,7 @@ def bent(source, scale=1.0):
 @pytest.fixture
 def session():
     source = places(14)
-    return session_of(source, bent(source), bone(), bone(1.05, 24), warping_penalty=2.0)
+    return session_of(source, bent(source), bone(), bone(1.05, 24), settings=WarpSettings(2.0))
 
 
 def survey(session, kind, surveyor=None, **options):
@@ -70,7 +71,7 @@ def survey(session, kind, surveyor=None, **options):
 def warp_of(session):
     source, destination = (np.array([p.position(s) for p in session.pairs]) for s in Side)
     factor = factorise(source)
-    return factor, destination, solve(factor, destination, session.warping_penalty)
+    return factor, destination, solve(factor, destination, session.settings.penalty)
 
 
 def slope(session, at):
@@ -106,7 +107,7 @@ def test_the_stretch_maps_are_the_ends_of_what_the_derivative_does_to_directions
 def test_the_uncertainty_is_the_square_root_of_the_kriging_variance(session):
     found = survey(session, MapKind.UNCERTAINTY).map
     factor, destination, _ = warp_of(session)
-    source, n, s = factor.source, len(factor.source), session.warping_penalty
+    source, n, s = factor.source, len(factor.source), session.settings.penalty
     drift = np.column_stack([np.ones(n), source])
     M = np.block([[-cdist(source, source) + s * np.eye(n), drift], [drift.T, np.zeros((4, 4))]])
     inverse = np.linalg.inv(M)
@@ -195,7 +196,7 @@ def test_the_overall_size_is_that_of_the_affine_fit():
 
 def test_a_mirrored_warp_is_mapped_like_the_other_one(session):
     source = np.array([p.source for p in session.pairs])
-    mirrored = session_of(source, bent(source) * [-1, 1, 1], bone(), warping_penalty=2.0)
+    mirrored = session_of(source, bent(source) * [-1, 1, 1], bone(), settings=WarpSettings(2.0))
     found, same = (survey(s, MapKind.VOLUME) for s in (mirrored, session))
     assert found.folds.count == 0
     assert np.allclose(found.map.values, same.map.values, rtol=1e-4)
@@ -226,9 +227,9 @@ def test_a_map_that_lacks_something_says_so_and_the_way_out(session):
     assert "Place a landmark" in survey(bare, MapKind.VOLUME).missing
     few = replace(session, landmarks=session.landmarks[:4])
     assert "five pairs" in survey(few, MapKind.UNCERTAINTY).missing
-    published = replace(session, convention=PenaltyConvention.OPYNSIM)
+    published = edits.set_convention(session, PenaltyConvention.OPYNSIM)
     assert "regularising" in survey(published, MapKind.UNCERTAINTY).missing
-    assert survey(replace(published, warping_penalty=0.0), MapKind.UNCERTAINTY).missing == ""
+    assert survey(edits.set_penalty(published, 0.0), MapKind.UNCERTAINTY).missing == ""
     flat = places(8) * [1, 1, 0]
     planar = session_of(flat[:4], flat[:4], bone())
     assert "five pairs" in survey(planar, MapKind.UNCERTAINTY).missing

@@ -71,6 +71,17 @@ def test_neighbours_torn_apart_accuse_each_other():
     assert (first.value, first.others) == (pytest.approx(4), (pytest.approx(30),))
 
 
+def test_of_three_neighbours_torn_apart_nobody_is_blamed_twice():
+    source, destination = bone(seed=1)
+    source[5], source[13] = source[9] + [4, 0, 0], source[9] + [0, 4, 0]
+    apart = 30 * np.random.default_rng(0).normal(size=(2, 3))
+    destination[[5, 13]] = destination[9] + apart
+    found = suspects(factorise(source), destination)
+    rows = [row for finding in found for row in finding.rows]
+    assert {5, 9, 13} <= set(rows)
+    assert len(rows) == len(set(rows))
+
+
 def test_one_place_picked_twice_on_the_destination_is_noticed():
     source, destination = bone()
     near = np.linalg.norm(source - source[4], axis=1).argsort()[1]

@@ -252,6 +252,16 @@ def test_duplicates_in_conflict_are_named_and_met_half_way():
     )
 
 
+def test_duplicates_are_no_conflict_where_a_penalty_meets_no_landmark_anyway():
+    rng = np.random.default_rng(8)
+    source, destination = rng.normal(size=(7, 3)), rng.normal(size=(7, 3))
+    source = np.vstack([source, source[2]])
+    destination = np.vstack([destination, destination[2] + [0.5, 0, 0]])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        solve_coefficients(source, destination, warping_penalty=0.1)
+
+
 def test_landmarks_almost_on_top_of_each_other_are_named():
     rng = np.random.default_rng(8)
     source = rng.normal(size=(7, 3))

@@ -48,6 +48,7 @@ class ScriptedDialogs:
         self.texts: list[str] = []
         self.unsaved = Answer.DISCARD
         self.unsaved_questions = 0
+        self.unsaved_reasons: list[str] = []
         self.missing: Path | None = None
         self.missing_questions: list[tuple[str, Path, Path | None]] = []
         self.lost: list[LostAnswer] = []
@@ -79,8 +80,9 @@ class ScriptedDialogs:
     def ask_save(self, _title, _filters, _proposal):
         return self.saves.pop(0) if self.saves else None
 
-    def ask_unsaved(self, _name):
+    def ask_unsaved(self, _name, reason=""):
         self.unsaved_questions += 1
+        self.unsaved_reasons.append(reason)
         return self.unsaved
 
     def ask_text(self, _title, _question, _proposal):
@@ -162,7 +164,7 @@ class Driver:
             (Side.SOURCE, "femur_generic.ply"),
             (Side.DESTINATION, "femur_subject.ply"),
         ):
-            self.window.documents.open_mesh(side, assets_folder() / name)
+            self.window.parts.documents.open_mesh(side, assets_folder() / name)
         self.settle()
 
     def place_of(self, side: Side, position) -> QPoint:

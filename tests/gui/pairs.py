@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from pinwarp.core.landmarks import Landmark, as_position
+from pinwarp.session import edits
 
 
 def give_pairs(user, source, destination) -> None:
@@ -15,7 +16,7 @@ def give_pairs(user, source, destination) -> None:
         Landmark(f"p{i}", as_position(a), as_position(b))
         for i, (a, b) in enumerate(zip(source, destination, strict=True))
     )
-    session = replace(user.session, landmarks=landmarks, warping_penalty=0.0)
+    session = edits.set_penalty(replace(user.session, landmarks=landmarks), 0.0)
     user.editor.replace_all(session, None)
     user.settle()
 

@@ -25,7 +25,7 @@ def test_a_fit_is_shown_and_exported_and_the_status_bar_says_so(user, tmp_path, 
     user.trigger(key)
     expected = fit_of(user, scaling).apply(user.session.mesh(SOURCE).vertices)
     assert np.allclose(there.overlay_points, expected, atol=1e-3)
-    note = user.window.warp_presenter.note
+    note = user.window.parts.warp.note
     assert note.isVisible()
     assert note.text().startswith("Shown and exported:")
     path = tmp_path / "out.ply"

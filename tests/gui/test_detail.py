@@ -24,7 +24,7 @@ def large(user, tmp_path, monkeypatch):
     path = tmp_path / "large.ply"
     sphere.save(path)
     for side in Side:
-        user.window.documents.open_mesh(side, path)
+        user.window.parts.documents.open_mesh(side, path)
     user.settle()
     places = sphere.points[np.linspace(0, sphere.n_points - 1, 9).astype(int)].astype(float)
     landmarks = [
@@ -56,7 +56,7 @@ def test_a_small_mesh_needs_no_stand_in():
 def test_the_stand_in_is_drawn_while_the_slider_moves_and_the_mesh_when_it_rests(large):
     viewport = large.window.viewports[Side.DESTINATION]
     assert drawn(viewport) == {"bone", "overlay"}
-    slider = large.window.panel.slider
+    slider = large.window.parts.penalty.panel.slider
     y = slider.height() // 2
     large.drag(slider, QPoint(8, y), QPoint(120, y), release=False)
     assert drawn(viewport) == {"bone stand-in", "overlay stand-in"}

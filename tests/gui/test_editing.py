@@ -47,7 +47,7 @@ def test_shift_drag_moves_a_landmark_off_the_surface_and_s_snaps_it_back(user):
     assert abs((moved - before) @ along) < 1e-6 * np.linalg.norm(moved - before) + 1e-3
     assert viewport.surface.closest(moved)[1] > 0.5
     user.editor.look(hovered=name)
-    assert "off the source surface" in user.window.hint.text()
+    assert "off the source surface" in user.window.parts.guidance.hint.text()
     user.press(Qt.Key.Key_S)
     assert viewport.surface.closest(user.session.landmark(name).source)[1] < 1e-3
     assert user.editor.undo_label == f"Snap {name}"
@@ -155,7 +155,7 @@ def test_space_accepts_the_ghost_near_where_the_landmark_was(user, side):
     name = "femoral_head_anterior"
     truth = np.array(user.session.landmark(name).position(side))
     without(user, side, name)
-    ghost = user.window.presenter.ghost(side)
+    ghost = user.window.parts.ghosts.at(side)
     assert ghost.name == name
     assert 0 < ghost.deviation < 30
     assert np.linalg.norm(np.array(ghost.position) - truth) < 8
@@ -165,7 +165,7 @@ def test_space_accepts_the_ghost_near_where_the_landmark_was(user, side):
     assert placed == ghost.position
     assert user.window.viewports[side].surface.closest(placed)[1] < 1e-3
     assert user.editor.undo_label == f"Accept {name}"
-    assert user.window.presenter.ghost(side) is None
+    assert user.window.parts.ghosts.at(side) is None
 
 
 def test_a_click_elsewhere_overrides_the_ghost(user):
@@ -185,7 +185,7 @@ def test_below_three_pairs_there_is_no_ghost(user):
     session = edits.remove_side(session, names[1], DESTINATION)
     user.editor.commit(session, "Keep two")
     user.settle()
-    assert [user.window.presenter.ghost(side) for side in Side] == [None, None]
+    assert [user.window.parts.ghosts.at(side) for side in Side] == [None, None]
     user.press(Qt.Key.Key_Space)
     assert "nothing to accept" in user.window.statusBar().currentMessage()
 
@@ -203,7 +203,7 @@ def test_with_three_or_four_pairs_the_ghost_has_no_disc(user):
     session = edits.remove_side(session, "medial_epicondyle", DESTINATION)
     user.editor.commit(session, "Keep four")
     user.settle()
-    assert user.window.presenter.ghost(DESTINATION).deviation is None
+    assert user.window.parts.ghosts.at(DESTINATION).deviation is None
 
 
 # The guide
@@ -215,7 +215,7 @@ def test_the_guide_asks_for_each_name_of_a_template_in_turn(user, tmp_path):
     path.write_text("fovea\ntrochanter\nepicondyle\n")
     user.dialogs.opens = [path]
     user.trigger("load_template")
-    bar = user.window.guide_bar
+    bar = user.window.parts.guidance.bar
     assert bar.isVisible()
     assert "fovea" in bar.words.text()
     assert (bar.progress.value(), bar.progress.maximum()) == (0, 3)
@@ -242,10 +242,10 @@ def test_the_guide_shows_where_the_landmark_lies_on_the_source(user):
     user.press(Qt.Key.Key_G)
     labelled = [m.name for m in user.window.viewports[SOURCE].layer.markers if m.labelled]
     assert labelled == ["femoral_head_anterior"]
-    assert "1" in user.window.guide_bar.words.text()
+    assert "1" in user.window.parts.guidance.bar.words.text()
     user.press(Qt.Key.Key_Space)
     user.press(Qt.Key.Key_Space)
-    assert "All 16 landmarks are placed" in user.window.guide_bar.words.text() or (
+    assert "All 16 landmarks are placed" in user.window.parts.guidance.bar.words.text() or (
         user.editor.view.guided is None
     )
 
@@ -258,7 +258,7 @@ def test_a_previous_session_serves_as_a_template(user, sample_copy):
     assert user.session.landmarks[0].state is LandmarkState.EMPTY
     user.trigger("undo")
     assert user.session.landmarks == ()
-    assert not user.window.guide_bar.isVisible()
+    assert not user.window.parts.guidance.bar.isVisible()
 
 
 def test_new_names_follow_the_pattern_that_was_set(user):
@@ -288,7 +288,7 @@ def test_ctrl_click_on_the_source_adds_a_passenger(user, tmp_path):
     user.trigger("export_passengers")
     lines = path.read_text().splitlines()
     assert len(lines) == 6
-    result = user.window.presenter.result
+    result = user.window.parts.warps.result
     assert np.allclose([float(x) for x in lines[-1].split(",")[1:]], result.passengers[-1])
 
 
@@ -333,12 +333,12 @@ def test_every_action_has_a_tip_that_names_its_key(user):
 
 def test_the_status_bar_says_what_a_click_would_do(user):
     without(user, DESTINATION, "femoral_head_anterior")
-    hint = user.window.hint.text()
+    hint = user.window.parts.guidance.hint.text()
     assert "on the destination places femoral_head_anterior" in hint
     assert "on the source places a new one" in hint
     assert "Space accepts" in hint
     user.press(Qt.Key.Key_L)
-    assert "locked" in user.window.hint.text()
+    assert "locked" in user.window.parts.guidance.hint.text()
 
 
 # Many

@@ -55,7 +55,7 @@ def test_a_ply_has_them_as_properties_of_its_vertices(sample, tmp_path):
     assert set(names) >= FIGURES | {"nx", "ny", "nz"}
     layout = [(name, "<f8" if name in "xyz" else "<f4") for name in names]
     rows = np.frombuffer(body, layout, count=len(warped.vertices))
-    expected = warped_mesh_data(sample.session, warped)
+    expected = warped_mesh_data(sample.session)
     for name, values in expected.scalars.items():
         assert np.array_equal(rows[name], values.astype(np.float32)), name
     assert np.array_equal(rows["nz"], expected.normals[:, 2].astype(np.float32))
@@ -225,7 +225,7 @@ def test_neither_inputs_nor_the_session_are_ever_replaced(sample, tmp_path):
     before = second.read_bytes()
     warp_files(sample, [first, second], tmp_path)
     assert "choose another folder" in sample.dialogs.errors[0][1]
-    sample.window.documents.open_mesh(Side.SOURCE, second)
+    sample.window.parts.documents.open_mesh(Side.SOURCE, second)
     sample.settle()
     warp_files(sample, [first], tmp_path)
     assert "choose another folder" in sample.dialogs.errors[1][1]

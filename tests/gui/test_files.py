@@ -44,7 +44,7 @@ def drop(viewport, *paths):
 def test_an_empty_window_says_what_to_do_next(user):
     assert "source mesh" in user.window.viewports[SOURCE].drawn(Hint).words
     assert "destination mesh" in user.window.viewports[DESTINATION].drawn(Hint).words
-    assert "Open the source mesh" in user.window.hint.text()
+    assert "Open the source mesh" in user.window.parts.guidance.hint.text()
     assert not user.window.actions_by_key["export_mesh"].isEnabled()
 
 
@@ -187,9 +187,9 @@ def test_saving_adds_the_suffix_and_remembers_the_file(user, tmp_path):
     user.trigger("save_as")
     path = tmp_path / "left femur.pinwarp.csv"
     assert path.is_file()
-    user.window.recent_menu.aboutToShow.emit()
-    assert user.window.recent_menu.actions()[0].text() == path.name
-    user.window.recent_menu.actions()[0].trigger()
+    user.window.parts.documents.recent_menu.aboutToShow.emit()
+    assert user.window.parts.documents.recent_menu.actions()[0].text() == path.name
+    user.window.parts.documents.recent_menu.actions()[0].trigger()
     user.settle()
     assert user.editor.path == path
 
@@ -265,7 +265,7 @@ def test_opening_a_large_mesh_shows_progress_and_leaves_the_window_alive(user, t
     timer = QTimer(user.window)
     timer.timeout.connect(count)
     timer.start(5)
-    user.window.documents.open_mesh(SOURCE, path)
+    user.window.parts.documents.open_mesh(SOURCE, path)
     assert user.window.progress.isVisible()
     assert user.window.cancel.isVisible()
     user.settle()
@@ -280,7 +280,7 @@ def test_cancelling_a_long_read_changes_nothing(user, tmp_path):
 
     path = tmp_path / "large.ply"
     pv.Plane(i_resolution=500, j_resolution=500).triangulate().save(path)
-    user.window.documents.open_mesh(SOURCE, path)
+    user.window.parts.documents.open_mesh(SOURCE, path)
     user.qtbot.mouseClick(user.window.cancel, Qt.MouseButton.LeftButton)
     user.settle()
     assert user.session.source is None
@@ -290,7 +290,7 @@ def test_cancelling_a_long_read_changes_nothing(user, tmp_path):
 
 def test_the_real_femur_pairs_by_name_and_exports_the_known_mesh(user, shared_data, tmp_path):
     folder = shared_data / "opensim-creator-femur"
-    user.window.documents.open(
+    user.window.parts.documents.open(
         Opening(
             source=folder / "femur_r.obj",
             destination=folder / "subject_femur_r.obj",

@@ -17,7 +17,7 @@ from tests.gui.test_warp_panel import (
 from pinwarp.core.components import applied
 from pinwarp.core.landmarks import positions
 from pinwarp.gui.scene.camera_pose import Pose
-from pinwarp.session.editor import GridKind
+from pinwarp.session.view import GridKind
 
 
 def grid(user, side):
@@ -29,7 +29,7 @@ def bent(user):
     session = user.session
     factor, spline = warp_of(session)
     target = positions(session.pairs, DESTINATION)
-    shown = applied(spline, factor, target, session.components, session.blend)
+    shown = applied(spline, factor, target, session.settings.components, session.settings.blend)
     lines = grid(user, SOURCE)
     return shown.evaluate(lines.reshape(-1, 3)).reshape(lines.shape)
 
@@ -66,7 +66,7 @@ def test_the_key_d_goes_through_the_grids_and_back_to_none(user):
         user.press(Qt.Key.Key_D)
         seen.append(user.editor.view.grid)
         assert user.window.actions_by_key[f"grid_{seen[-1].name.lower()}"].isChecked()
-        assert user.window.warp_panel.grid.currentData() == seen[-1]
+        assert user.window.parts.warp.panel.grid.currentData() == seen[-1]
     assert seen == [*list(GridKind)[1:], GridKind.NONE]
     assert grid(user, SOURCE) is None
     assert grid(user, DESTINATION) is None
@@ -75,7 +75,7 @@ def test_the_key_d_goes_through_the_grids_and_back_to_none(user):
 def test_the_grid_is_chosen_on_the_panel_and_its_plane_moved_there(user):
     user.open_sample()
     show_panel(user)
-    panel = user.window.warp_panel
+    panel = user.window.parts.warp.panel
     assert not panel.grid_share.isVisible()
     panel.grid.setFocus()
     for _ in range(4):
@@ -107,13 +107,13 @@ def test_the_grid_follows_a_landmark_while_it_is_dragged(user):
 def test_the_grid_follows_penalty_and_blend(user):
     user.open_sample()
     user.trigger("grid_box")
-    slider = user.window.panel.slider
+    slider = user.window.parts.penalty.panel.slider
     slide(user, slider, slider.maximum() // 2)
-    assert user.session.warping_penalty > 0
+    assert user.session.settings.penalty > 0
     assert np.allclose(grid(user, DESTINATION), bent(user), atol=1e-3)
     show_panel(user)
-    slide(user, user.window.warp_panel.blend, 40, release=False)
-    assert user.session.blend == pytest.approx(0.4)
+    slide(user, user.window.parts.warp.panel.blend, 40, release=False)
+    assert user.session.settings.blend == pytest.approx(0.4)
     assert np.allclose(grid(user, DESTINATION), bent(user), atol=1e-3)
 
 

@@ -333,7 +333,7 @@ def test_millimetres_on_a_real_bone_in_metres(user, shared_data, tmp_path):
         "name,x,y,z\n"
         + "".join(f"{name},{','.join(str(1000 * float(x)) for x in v)}\n" for name, *v in rows)
     )
-    user.window.documents.open_mesh(DESTINATION, folder / "subject_femur_r.obj")
+    user.window.parts.documents.open_mesh(DESTINATION, folder / "subject_femur_r.obj")
     user.settle()
 
     def look(dialog):
@@ -356,7 +356,7 @@ def test_a_mesh_opened_after_its_landmarks_offers_to_correct_them_once(user, bri
     # Without a mesh there is nothing to compare with, and nothing is asked.
     bring(LPS.applied(pairs, SOURCE), SOURCE)
     user.dialogs.choices = [0]
-    user.window.documents.open_mesh(SOURCE, assets_folder() / "femur_generic.ply")
+    user.window.parts.documents.open_mesh(SOURCE, assets_folder() / "femur_generic.ply")
     user.settle()
     ((_, text, more, labels),) = user.dialogs.choice_questions
     assert "source landmarks lie" in text
@@ -369,7 +369,7 @@ def test_a_mesh_opened_after_its_landmarks_offers_to_correct_them_once(user, bri
     assert user.session.landmarks[0].source != pairs[0].source
     user.trigger("redo")
     # All is well now: the other mesh raises no further question.
-    user.window.documents.open_mesh(DESTINATION, assets_folder() / "femur_subject.ply")
+    user.window.parts.documents.open_mesh(DESTINATION, assets_folder() / "femur_subject.ply")
     user.settle()
     assert len(user.dialogs.choice_questions) == 1
 
@@ -378,7 +378,7 @@ def test_an_offer_that_is_declined_changes_nothing(user, bring):
     pairs = [x for x in read_session(sample_session()).landmarks if x.is_pair]
     spoilt = LPS.applied(pairs, SOURCE)
     bring(spoilt, SOURCE)
-    user.window.documents.open_mesh(SOURCE, assets_folder() / "femur_generic.ply")
+    user.window.parts.documents.open_mesh(SOURCE, assets_folder() / "femur_generic.ply")
     user.settle()
     assert len(user.dialogs.choice_questions) == 1
     assert [x.source for x in user.session.landmarks] == [x.source for x in spoilt]
@@ -392,7 +392,7 @@ def test_files_of_the_command_line_come_in_at_once_and_tell_afterwards(user, tmp
     write_landmarks(paths[DESTINATION], LPS.applied(renamed(pairs), DESTINATION), DESTINATION)
     with paths[DESTINATION].open("a") as stream:
         stream.write("broken,1,two,3\n")
-    user.window.documents.open(
+    user.window.parts.documents.open(
         Opening(
             source=assets_folder() / "femur_generic.ply",
             destination=assets_folder() / "femur_subject.ply",
@@ -426,10 +426,10 @@ def small_bone(tmp_path):
 
 
 def open_apart(user, small_bone):
-    user.window.documents.open_mesh(SOURCE, small_bone)
+    user.window.parts.documents.open_mesh(SOURCE, small_bone)
     user.settle()
     assert user.session.unit == "m"
-    user.window.documents.open_mesh(DESTINATION, assets_folder() / "femur_subject.ply")
+    user.window.parts.documents.open_mesh(DESTINATION, assets_folder() / "femur_subject.ply")
     user.settle()
 
 
@@ -474,15 +474,16 @@ def test_a_unit_that_is_wrong_on_one_side_is_not_shown_there(user, small_bone):
     open_apart(user, small_bone)
     assert user.window.viewports[SOURCE].drawn(ScaleBar).unit == "m"
     assert user.window.viewports[DESTINATION].drawn(ScaleBar).unit == ""
-    columns = {user.window.model.title(i) for i in range(user.window.model.columnCount())}
+    model = user.window.parts.table.model
+    columns = {model.title(number) for number in range(model.columnCount())}
     assert {"Source x\nm", "Dest. x", "Residual", "Left out"} <= columns
 
 
 def test_sizes_that_no_unit_explains_are_only_told(user, tmp_path):
     path = tmp_path / "huge.ply"
     write_mesh(path, Mesh(1e9 * np.eye(3), [[0, 1, 2]]))
-    user.window.documents.open_mesh(SOURCE, assets_folder() / "femur_generic.ply")
-    user.window.documents.open_mesh(DESTINATION, path)
+    user.window.parts.documents.open_mesh(SOURCE, assets_folder() / "femur_generic.ply")
+    user.window.parts.documents.open_mesh(DESTINATION, path)
     user.settle()
     assert user.dialogs.choice_questions == []
     ((title, text, _),) = user.dialogs.told
@@ -493,10 +494,10 @@ def test_sizes_that_no_unit_explains_are_only_told(user, tmp_path):
 def test_real_pelves_in_metres_and_millimetres(user, shared_data):
     folder = shared_data / "msk-morph-pelvis"
     user.dialogs.choices = [0]
-    user.window.documents.open_mesh(SOURCE, folder / "template_pelvis_r.stl")
+    user.window.parts.documents.open_mesh(SOURCE, folder / "template_pelvis_r.stl")
     user.settle()
     assert user.dialogs.choice_questions == []
-    user.window.documents.open_mesh(DESTINATION, folder / "target_pelvis_r.stl")
+    user.window.parts.documents.open_mesh(DESTINATION, folder / "target_pelvis_r.stl")
     user.settle()
     assert len(user.dialogs.choice_questions) == 1
     assert 0.2 < user.session.mesh(DESTINATION).diagonal < 0.4
@@ -528,7 +529,10 @@ def test_escape_leaves_everything_at_a_choice(user):
 
 def test_lengths_in_the_table_say_their_unit_and_follow_it(user):
     user.open_sample()
-    header, model = user.window.table.horizontalHeader(), user.window.table.model()
+    header, model = (
+        user.window.parts.table.table.horizontalHeader(),
+        user.window.parts.table.table.model(),
+    )
 
     def title(key):
         for i in range(model.columnCount()):
@@ -540,7 +544,7 @@ def test_lengths_in_the_table_say_their_unit_and_follow_it(user):
     assert title("Residual") == "Residual\nmm"
     assert title("Left out") == "Left out\nmm"
     assert header.height() >= 2 * header.fontMetrics().height()
-    unit = user.window.panel.unit
+    unit = user.window.parts.penalty.panel.unit
     unit.setFocus()
     QTest.keyClick(unit, Qt.Key.Key_Down)
     QTest.keyClick(unit, Qt.Key.Key_Return)

@@ -140,7 +140,7 @@ def test_a_pair_keeps_its_residual_under_another_name(user):
     user.editor.commit(edits.set_penalty(user.session, 50.0), "Change penalty")
     user.settle()
     a, b = (x.name for x in user.session.pairs[:2])
-    model, column = user.window.model, column_number("residual")
+    model, column = user.window.parts.table.model, column_number("residual")
     before = model.index(0, column).data()
     assert float(before) > 0
     user.editor.commit(edits.rename_many(user.session, {a: b, b: a}), "Rename")

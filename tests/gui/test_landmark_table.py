@@ -37,8 +37,8 @@ class TableUser:
     def __init__(self, user) -> None:
         self.user = user
         self.window = user.window
-        self.table = user.window.table
-        self.panel = user.window.landmarks
+        self.table = user.window.parts.table.table
+        self.panel = user.window.parts.table.panel
 
     @property
     def session(self):
@@ -127,7 +127,7 @@ def test_the_header_menu_brings_the_order_back(four):
 
 
 def test_what_has_no_number_comes_last_in_both_directions(four):
-    four.window.model.show_values("residual", {"b": 1.0, "a10": 3.0, "a9": 2.0})
+    four.window.parts.table.model.show_values("residual", {"b": 1.0, "a10": 3.0, "a9": 2.0})
     four.click_header("residual")
     assert four.shown() == ["b", "a9", "a10", "c"]
     four.click_header("residual")
@@ -172,7 +172,7 @@ def test_a_disabled_pair_stays_dimmed_and_out_under_sorting_and_filtering(four):
 def test_rows_are_dragged_to_another_place(four):
     table = four.table
     four.click("a9")
-    data = four.window.model.mimeData([four.window.model.index(2, 0)])
+    data = four.window.parts.table.model.mimeData([four.window.parts.table.model.index(2, 0)])
     at = QPointF(four.cell("b").left() + 60, four.cell("b").top() + 1)
     drop(table, data, at)
     assert four.shown() == ["a9", "b", "a10", "c"]
@@ -342,6 +342,21 @@ def test_escape_gives_a_refused_name_up(four):
     assert four.table.findChild(QLineEdit) is None or not line.isVisible()
     assert four.shown() == ["b", "a10", "a9", "c"]
     assert four.user.editor.undo_label is None
+
+
+def test_the_key_for_renaming_leaves_a_name_that_is_being_typed_alone(four):
+    four.click("a9")
+    four.press(Qt.Key.Key_F2)
+    line = four.table.findChild(QLineEdit)
+    line.selectAll()
+    QTest.keyClicks(line, "ape")
+    four.press(Qt.Key.Key_F2)
+    assert four.table.findChild(QLineEdit) is line
+    assert four.user.editor.undo_label is None
+    QTest.keyClicks(line, "x")
+    QTest.keyClick(line, Qt.Key.Key_Return)
+    four.user.settle()
+    assert four.shown() == ["b", "a10", "apex", "c"]
 
 
 def test_many_are_renamed_by_a_pattern(four):
@@ -530,7 +545,7 @@ def test_n_finds_the_next_incomplete_landmark_and_goes_round(four):
 
 
 def test_an_empty_table_says_what_to_do(user):
-    table = user.window.table
+    table = user.window.parts.table.table
     empty = table.viewport().grab().toImage()
     user.editor.commit(edits.import_pairs(user.session, [landmark("a", 1)]), "Import")
     user.settle()

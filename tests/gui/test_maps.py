@@ -113,7 +113,7 @@ def test_a_map_chosen_from_the_menu_colours_the_warped_source_and_leaves_when_it
 
 
 def test_the_key_m_shows_one_map_after_the_other_and_then_none(sample):
-    combo = sample.window.map_panel.choice
+    combo = sample.window.parts.maps.panel.choice
     seen = []
     for _ in range(len(MapKind) + 1):
         sample.press(Qt.Key.Key_M)
@@ -141,7 +141,7 @@ def test_the_bone_does_not_cover_what_lies_inside_it(sample):
 
 
 def test_the_opacity_of_a_map_is_its_own(sample):
-    slider = sample.window.opacity
+    slider = sample.window.parts.overlay.opacity
     before = sample.editor.view.opacity
     choose(sample, MapKind.VOLUME)
     assert slider.value() == 100
@@ -189,7 +189,7 @@ def test_a_click_on_the_legend_fixes_its_range_while_the_penalty_changes_and_ano
     sample,
 ):
     choose(sample, MapKind.DISTANCE)
-    legend, panel = there(sample).map_legend, sample.window.map_panel
+    legend, panel = there(sample).map_legend, sample.window.parts.maps.panel
     before = legend.content
     assert not before.fixed
     QTest.mouseClick(legend, Qt.MouseButton.LeftButton)
@@ -200,7 +200,7 @@ def test_a_click_on_the_legend_fixes_its_range_while_the_penalty_changes_and_ano
     sample.settle()
     assert legend.content.range == before.range
     assert legend.content.clipped == (False, True), "worse than the fixed range shows"
-    assert sample.window.maps.survey.map.range[1] > before.range[1]
+    assert sample.window.parts.maps.survey.map.range[1] > before.range[1]
     sample.press(Qt.Key.Key_M)
     assert not legend.content.fixed, "each map has its own range"
     choose(sample, MapKind.DISTANCE)
@@ -208,7 +208,7 @@ def test_a_click_on_the_legend_fixes_its_range_while_the_penalty_changes_and_ano
     QTest.mouseClick(legend, Qt.MouseButton.LeftButton)
     sample.settle()
     assert not legend.content.fixed
-    assert legend.content.range == sample.window.maps.survey.map.range
+    assert legend.content.range == sample.window.parts.maps.survey.map.range
 
 
 def type_into(line, text):
@@ -219,14 +219,14 @@ def type_into(line, text):
 
 
 def show_panel(user):
-    user.window.findChild(type(user.window.map_panel.parentWidget()), "map").raise_()
+    user.window.findChild(type(user.window.parts.maps.panel.parentWidget()), "map").raise_()
     user.settle()
 
 
 def test_a_range_typed_into_the_panel_is_the_legends_and_nonsense_is_refused_in_words(sample):
     show_panel(sample)
     choose(sample, MapKind.VOLUME)
-    panel, legend = sample.window.map_panel, there(sample).map_legend
+    panel, legend = sample.window.parts.maps.panel, there(sample).map_legend
     assert not panel.high.isEnabled()
     QTest.mouseClick(
         panel.fixed, Qt.MouseButton.LeftButton, pos=QPoint(8, panel.fixed.height() // 2)
@@ -263,12 +263,12 @@ def test_the_legend_gives_way_to_caption_and_scale_bar_and_labels_give_way_to_it
 def test_the_overall_difference_in_size_can_be_taken_out(sample):
     show_panel(sample)
     choose(sample, MapKind.VOLUME)
-    box = sample.window.map_panel.relative
-    before = sample.window.maps.survey.map
+    box = sample.window.parts.maps.panel.relative
+    before = sample.window.parts.maps.survey.map
     assert before.overall == 1
     QTest.mouseClick(box, Qt.MouseButton.LeftButton, pos=QPoint(8, box.height() // 2))
     sample.settle()
-    after = sample.window.maps.survey.map
+    after = sample.window.parts.maps.survey.map
     assert np.allclose(after.values, before.values / after.overall**3, rtol=1e-5)
     assert 0.9 < after.median < 1.1 < 1.2 * before.median + 0.2
     assert "relative" in there(sample).map_legend.content.note
@@ -277,7 +277,7 @@ def test_the_overall_difference_in_size_can_be_taken_out(sample):
 def test_the_figures_of_the_real_femur_are_read_off_the_panel(user, shared_data):
     folder = shared_data / "opensim-creator-femur"
     for side, name in ((SOURCE, "femur_r.obj"), (DESTINATION, "subject_femur_r.obj")):
-        user.window.documents.open_mesh(side, folder / name)
+        user.window.parts.documents.open_mesh(side, folder / name)
     user.settle()
     for side, name in (
         (SOURCE, "femur_r_warp.landmarks.csv"),
@@ -287,17 +287,17 @@ def test_the_figures_of_the_real_femur_are_read_off_the_panel(user, shared_data)
         user.trigger(f"import_{side.value}")
     user.editor.commit(edits.set_unit(user.session, "m"), "Change unit")
     choose(user, MapKind.DISTANCE)
-    figures = user.window.maps.survey.map.comparison.forward_figures
+    figures = user.window.parts.maps.survey.map.comparison.forward_figures
     assert figures.mean == pytest.approx(2.25e-3, rel=0.02)
     assert figures.percentile_95 == pytest.approx(5.40e-3, rel=0.02)
     assert figures.maximum == pytest.approx(7.63e-3, rel=0.02)
-    text = user.window.map_panel.figures.text()
+    text = user.window.parts.maps.panel.figures.text()
     for value in ("0.00225 m", "0.00540 m", "0.00763 m"):
         assert value in text
 
 
 def test_without_bones_or_pairs_the_panel_says_what_is_missing(user):
-    note = user.window.map_panel.note
+    note = user.window.parts.maps.panel.note
     choose(user, MapKind.UNCERTAINTY)
     assert "Open the source mesh" in note.text()
     assert note.text() in user.window.statusBar().currentMessage()
@@ -308,15 +308,15 @@ def test_without_bones_or_pairs_the_panel_says_what_is_missing(user):
         user.click_position(DESTINATION, user.places_down_the_bone(DESTINATION, 4)[0])
     assert "five pairs" in note.text()
     assert not there(user).map_legend.isVisible()
-    assert not user.window.map_panel.place_next.isVisible()
+    assert not user.window.parts.maps.panel.place_next.isVisible()
 
 
 def test_opening_another_destination_measures_the_distance_to_it(sample, tmp_path):
     choose(sample, MapKind.DISTANCE)
-    before = sample.window.maps.survey.map
-    sample.window.documents.open_mesh(DESTINATION, assets_folder() / "femur_generic.ply")
+    before = sample.window.parts.maps.survey.map
+    sample.window.parts.documents.open_mesh(DESTINATION, assets_folder() / "femur_generic.ply")
     sample.settle()
-    assert sample.window.maps.survey.map.median > 2 * before.median
+    assert sample.window.parts.maps.survey.map.median > 2 * before.median
 
 
 # Folds
@@ -333,7 +333,7 @@ def folded(sample):
     for a, b in ((i, j), (j, i)):
         session = edits.move(session, pairs[a].name, DESTINATION, pairs[b].destination)
     sample.told = []
-    sample.window.maps.folds_changed.connect(sample.told.append)
+    sample.window.parts.maps.folds_changed.connect(sample.told.append)
     sample.editor.commit(session, "Exchange")
     sample.settle()
     sample.names = {pairs[i].name, pairs[j].name}
@@ -341,9 +341,9 @@ def folded(sample):
 
 
 def test_a_fold_is_told_in_the_status_bar_and_a_click_selects_the_landmarks(folded):
-    button = folded.window.maps.fold_note
+    button = folded.window.parts.findings.fold_note
     assert button.isVisible()
-    count = folded.window.maps.survey.folds.count
+    count = folded.window.parts.maps.survey.folds.count
     assert button.text().startswith(f"{count:,} vertices fold near ")
     assert all(name in button.text() for name in folded.names)
     (findings,) = folded.told
@@ -359,15 +359,15 @@ def test_a_fold_is_told_in_the_status_bar_and_a_click_selects_the_landmarks(fold
 
 
 def test_a_fold_stands_in_the_list_behind_the_swap_that_makes_it(folded):
-    kinds = [row.found.finding.kind for row in folded.window.findings.rows]
+    kinds = [row.found.finding.kind for row in folded.window.parts.findings.panel.rows]
     assert kinds[0] is FindingKind.SWAPPED
     assert FindingKind.FOLD in kinds
     folded.trigger("undo")
-    assert folded.window.findings.rows == []
+    assert folded.window.parts.findings.panel.rows == []
 
 
 def test_a_fold_shines_through_the_bone_with_and_without_a_map_and_goes_with_its_cause(folded):
-    QTest.mouseClick(folded.window.maps.fold_note, Qt.MouseButton.LeftButton)
+    QTest.mouseClick(folded.window.parts.findings.fold_note, Qt.MouseButton.LeftButton)
     folded.settle()
 
     def loud():
@@ -395,7 +395,7 @@ def test_a_renamed_landmark_is_renamed_in_the_status_bar(folded):
     name = sorted(folded.names)[0]
     folded.editor.commit(edits.rename(folded.session, name, "apex"), "Rename")
     folded.settle()
-    assert "apex" in folded.window.maps.fold_note.text()
+    assert "apex" in folded.window.parts.findings.fold_note.text()
 
 
 def test_no_actor_is_left_over_when_maps_and_folds_come_and_go(folded):
@@ -471,7 +471,7 @@ def test_the_suggested_place_respects_locks_guide_and_waiting_landmarks(sample):
 def test_the_panel_has_a_button_for_the_suggested_place(sample):
     show_panel(sample)
     choose(sample, MapKind.UNCERTAINTY)
-    button = sample.window.map_panel.place_next
+    button = sample.window.parts.maps.panel.place_next
     assert button.isVisible()
     count = len(sample.session.landmarks)
     QTest.mouseClick(button, Qt.MouseButton.LeftButton)
@@ -479,7 +479,9 @@ def test_the_panel_has_a_button_for_the_suggested_place(sample):
     assert len(sample.session.landmarks) == count + 1
     assert not button.isEnabled()
     name = sample.session.landmarks[-1].name
-    assert sample.window.map_panel.advice.text().startswith(f"{name} stands where it helps most")
+    assert sample.window.parts.maps.panel.advice.text().startswith(
+        f"{name} stands where it helps most"
+    )
 
 
 # Large meshes
@@ -502,7 +504,7 @@ def test_a_stand_in_is_coloured_like_the_mesh_it_stands_for(large):
 
 
 def test_a_survey_that_comes_too_late_is_dropped(sample, monkeypatch):
-    maps, gate, begun = sample.window.maps, threading.Event(), []
+    maps, gate, begun = sample.window.parts.maps, threading.Event(), []
     real = maps._surveyor.survey
 
     def slow(result, *args, **options):
@@ -522,10 +524,10 @@ def test_a_survey_that_comes_too_late_is_dropped(sample, monkeypatch):
     sample.editor.commit(session, "Move")
     window = sample.window
     sample.qtbot.waitUntil(
-        lambda: window.presenter.result is not late and window.scenes.is_settled, timeout=30_000
+        lambda: window.parts.warps.result is not late and window.scenes.is_settled, timeout=30_000
     )
     assert not is_coloured(sample)
     gate.set()
     sample.settle()
-    assert [survey.result for survey in shown] == [sample.window.presenter.result]
+    assert [survey.result for survey in shown] == [sample.window.parts.warps.result]
     assert is_coloured(sample)

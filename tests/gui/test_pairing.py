@@ -64,11 +64,11 @@ def test_five_clicked_pairs_and_the_slider_survive_saving_and_reopening(
         user.click_position(SOURCE, landmark.source)
         user.click_position(DESTINATION, landmark.destination)
     assert len(user.session.pairs) == 5
-    slider = user.window.panel.slider
+    slider = user.window.parts.penalty.panel.slider
     assert slider.isEnabled()
     middle = slider.rect().center()
     user.drag(slider, QPoint(8, middle.y()), middle)
-    assert user.session.warping_penalty > 0
+    assert user.session.settings.penalty > 0
     assert user.editor.undo_label == "Change penalty"
     path = tmp_path / "clicked.pinwarp.csv"
     user.dialogs.saves = [path]
@@ -80,7 +80,7 @@ def test_five_clicked_pairs_and_the_slider_survive_saving_and_reopening(
     user.dialogs.opens = [path]
     user.trigger("open_session")
     assert user.session.landmarks == saved.landmarks
-    assert user.session.warping_penalty == saved.warping_penalty
+    assert user.session.settings.penalty == saved.settings.penalty
     assert user.session.source.path == saved.source.path
     assert np.allclose(user.window.viewports[DESTINATION].overlay_points, overlay)
 
@@ -100,7 +100,7 @@ def test_the_overlay_follows_clicks_undo_and_the_slider(user, anterior_pairs):
         Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier
     )
     assert np.allclose(viewport.overlay_points, pictures[-1])
-    slider = user.window.panel.slider
+    slider = user.window.parts.penalty.panel.slider
     user.drag(slider, QPoint(8, slider.height() // 2), slider.rect().center(), release=False)
     assert not np.allclose(viewport.overlay_points, pictures[-1])
     assert user.editor.is_previewing
@@ -136,7 +136,7 @@ def test_clicking_a_landmark_selects_it_everywhere_and_moves_nothing(user, anter
     user.click_position(SOURCE, before.landmarks[0].source)
     assert user.session == before
     assert user.editor.selection.names == ("landmark_0",)
-    assert [i.row() for i in user.window.table.selectionModel().selectedRows()] == [0]
+    assert [i.row() for i in user.window.parts.table.table.selectionModel().selectedRows()] == [0]
     selected = [m for v in user.window.viewports.values() for m in v.layer.markers if m.selected]
     assert [m.name for m in selected] == ["landmark_0", "landmark_0"]
     assert all(m.labelled for m in selected)
@@ -145,7 +145,7 @@ def test_clicking_a_landmark_selects_it_everywhere_and_moves_nothing(user, anter
 def test_clicking_a_table_row_selects_the_landmark_in_the_views(user, anterior_pairs):
     user.click_position(SOURCE, anterior_pairs[0].source)
     user.click_position(SOURCE, anterior_pairs[1].source)
-    table = user.window.table
+    table = user.window.parts.table.table
     where = table.visualRect(table.index_of("landmark_0")).center()
     user.qtbot.mouseClick(table.viewport(), Qt.MouseButton.LeftButton, pos=where)
     user.settle()
@@ -243,7 +243,7 @@ def test_delete_removes_the_selected_side_and_ctrl_delete_the_landmark(user, ant
 def test_a_landmark_is_renamed_in_the_table(user, anterior_pairs):
     user.click_position(SOURCE, anterior_pairs[0].source)
     user.trigger("rename")
-    field = user.window.table.findChild(QLineEdit)
+    field = user.window.parts.table.table.findChild(QLineEdit)
     user.qtbot.keyClicks(field, "fovea")
     user.qtbot.keyClick(field, Qt.Key.Key_Return)
     user.settle()
@@ -255,7 +255,7 @@ def test_a_name_that_is_taken_is_refused_with_the_reason(user, anterior_pairs):
     user.click_position(SOURCE, anterior_pairs[0].source)
     user.click_position(SOURCE, anterior_pairs[1].source)
     user.trigger("rename")
-    field = user.window.table.findChild(QLineEdit)
+    field = user.window.parts.table.table.findChild(QLineEdit)
     user.qtbot.keyClicks(field, "landmark_0")
     user.qtbot.keyClick(field, Qt.Key.Key_Return)
     user.settle()
@@ -265,7 +265,7 @@ def test_a_name_that_is_taken_is_refused_with_the_reason(user, anterior_pairs):
 
 def test_a_tick_in_the_table_lets_a_pair_sit_out(user):
     user.open_sample()
-    table = user.window.table
+    table = user.window.parts.table.table
     before = user.window.viewports[DESTINATION].overlay_points
     cell = table.visualRect(table.order.index(0, 0))
     user.qtbot.mouseClick(
@@ -302,7 +302,7 @@ def test_hovering_a_landmark_shows_its_name_on_both_sides(user):
         m.name for v in user.window.viewports.values() for m in v.layer.markers if m.labelled
     ]
     assert labelled == [seen[0].name] * 2
-    assert seen[0].name in user.window.hint.text()
+    assert seen[0].name in user.window.parts.guidance.hint.text()
 
 
 def test_passengers_are_carried_by_the_warp(user):

@@ -16,7 +16,7 @@ SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
 def pelvis(user, shared_data):
     folder = shared_data / "msk-morph-pelvis"
     for side, name in ((SOURCE, "template_pelvis_r.stl"), (DESTINATION, "target_pelvis_r.stl")):
-        user.window.documents.open_mesh(side, folder / name)
+        user.window.parts.documents.open_mesh(side, folder / name)
     user.settle()
     return user
 
@@ -48,7 +48,7 @@ def test_twelve_pairs_three_drags_one_disabled_and_all_the_way_back(pelvis):
         user.click(SOURCE, at)
         name = user.editor.selection.names[0]
         assert user.session.landmark(name).source is not None, f"click {number} missed"
-        if user.window.presenter.ghost(DESTINATION) is not None:
+        if user.window.parts.ghosts.at(DESTINATION) is not None:
             user.press(Qt.Key.Key_Space, widget=source)
             accepted += 1
         else:
@@ -84,7 +84,7 @@ def test_twelve_pairs_three_drags_one_disabled_and_all_the_way_back(pelvis):
             break
     assert dragged == 3
 
-    table = user.window.table
+    table = user.window.parts.table.table
     cell = table.visualRect(table.index_of(user.session.landmarks[5].name))
     user.qtbot.mouseClick(
         table.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(cell.left() + 10, cell.center().y())
@@ -105,4 +105,4 @@ def test_twelve_pairs_three_drags_one_disabled_and_all_the_way_back(pelvis):
     while user.editor.redo_label is not None:
         user.press(Qt.Key.Key_Z, control | Qt.KeyboardModifier.ShiftModifier)
     assert user.session == end
-    assert np.isfinite(user.window.presenter.result.vertices).all()
+    assert np.isfinite(user.window.parts.warps.result.vertices).all()

@@ -13,7 +13,7 @@ from pinwarp.core.spline import PenaltyConvention
 @pytest.fixture
 def panel(user):
     user.open_sample()
-    return user.window.panel
+    return user.window.parts.penalty.panel
 
 
 def type_into(user, field, text):
@@ -34,7 +34,7 @@ def test_the_slider_goes_from_interpolation_to_the_affine_fit(user, panel):
     slider = panel.slider
     y = slider.height() // 2
     user.drag(slider, QPoint(8, y), QPoint(slider.width() + 20, y))
-    assert math.isinf(user.session.warping_penalty)
+    assert math.isinf(user.session.settings.penalty)
     assert panel.value.text() == "affine"
     assert plain(panel.figures.flexibility) == "0%"
     assert float(plain(panel.figures.residual).split()[0]) > 1
@@ -52,15 +52,15 @@ def test_half_way_leaves_half_of_the_flexibility(user, panel):
 def test_arrow_keys_move_the_slider(user, panel):
     panel.slider.setFocus()
     user.press(Qt.Key.Key_Right, widget=panel.slider)
-    assert user.session.warping_penalty > 0
+    assert user.session.settings.penalty > 0
 
 
 def test_an_exact_penalty_can_be_typed_and_moves_the_slider(user, panel):
     type_into(user, panel.value, "12.5")
-    assert user.session.warping_penalty == 12.5
+    assert user.session.settings.penalty == 12.5
     assert 0 < panel.slider.value() < 1000
     type_into(user, panel.value, "affine")
-    assert math.isinf(user.session.warping_penalty)
+    assert math.isinf(user.session.settings.penalty)
     assert panel.slider.value() == 1000
 
 
@@ -68,7 +68,7 @@ def test_an_exact_penalty_can_be_typed_and_moves_the_slider(user, panel):
 def test_nonsense_is_refused_in_words_and_changes_nothing(user, panel, text):
     type_into(user, panel.value, "2")
     type_into(user, panel.value, text) if text else type_into(user, panel.value, " ")
-    assert user.session.warping_penalty == 2
+    assert user.session.settings.penalty == 2
     assert "not a penalty" in panel.warning.text()
     assert panel.value.text() == "2"
 
@@ -77,7 +77,7 @@ def test_opynsim_shows_its_poles_and_warns(user, panel):
     assert panel.slider.poles == ()
     panel.convention.setFocus()
     user.press(Qt.Key.Key_Down, widget=panel.convention)
-    assert user.session.convention is PenaltyConvention.OPYNSIM
+    assert user.session.settings.convention is PenaltyConvention.OPYNSIM
     assert len(panel.slider.poles) == 12
     assert all(0 < share < 1 for share in panel.slider.poles)
     assert "poles" in panel.warning.text()
@@ -92,8 +92,8 @@ def test_below_five_pairs_the_penalty_rests_and_says_why(user):
         user.editor.select(landmark.name)
         user.trigger("delete_landmark")
     assert len(user.session.pairs) == 4
-    assert not user.window.panel.slider.isEnabled()
-    assert "five pairs" in user.window.panel.warning.text()
+    assert not user.window.parts.penalty.panel.slider.isEnabled()
+    assert "five pairs" in user.window.parts.penalty.panel.warning.text()
 
 
 def test_the_unit_is_chosen_beside_the_value(user, panel):
@@ -111,8 +111,8 @@ def test_the_overlay_can_be_hidden_and_faded(user, panel):
     viewport = user.window.viewports[Side.DESTINATION]
     user.press(Qt.Key.Key_W)
     assert not viewport.actors["overlay"].GetVisibility()
-    assert not user.window.opacity.isEnabled()
+    assert not user.window.parts.overlay.opacity.isEnabled()
     user.press(Qt.Key.Key_W)
-    slider = user.window.opacity
+    slider = user.window.parts.overlay.opacity
     user.drag(slider, QPoint(slider.width() // 2, 8), QPoint(4, 8))
     assert viewport.actors["overlay"].prop.opacity < 0.3

@@ -52,19 +52,19 @@ def shown(user):
 
 
 def test_holding_b_shows_the_previous_penalty_and_letting_go_the_present_one(user):
-    present, residual = shown(user), user.window.panel.figures.residual.text()
+    present, residual = shown(user), user.window.parts.penalty.panel.figures.residual.text()
     hold(user)
-    assert user.session.warping_penalty == 20
-    assert user.editor.committed.warping_penalty == 5
+    assert user.session.settings.penalty == 20
+    assert user.editor.committed.settings.penalty == 5
     assert badge(user) == "B: previous penalty 20 mm (hold)"
-    assert user.window.panel.value.text() == "20"
-    assert user.window.panel.figures.residual.text() != residual
+    assert user.window.parts.penalty.panel.value.text() == "20"
+    assert user.window.parts.penalty.panel.figures.residual.text() != residual
     assert np.abs(shown(user) - present).max() > 0.01
     let_go(user)
-    assert user.session.warping_penalty == 5
+    assert user.session.settings.penalty == 5
     assert not user.editor.is_previewing
     assert badge(user) == ""
-    assert user.window.panel.figures.residual.text() == residual
+    assert user.window.parts.penalty.panel.figures.residual.text() == residual
     assert np.abs(shown(user) - present).max() < 1e-3
 
 
@@ -73,7 +73,7 @@ def test_a_comparison_leaves_nothing_in_the_history(user):
     assert (user.editor.undo_label, user.editor.redo_label) == ("Change penalty",) * 2
     before = (user.session, user.editor.is_dirty)
     hold(user)
-    assert user.session.warping_penalty == 5, "what was undone came before"
+    assert user.session.settings.penalty == 5, "what was undone came before"
     let_go(user)
     assert (user.session, user.editor.is_dirty) == before
     assert (user.editor.undo_label, user.editor.redo_label) == ("Change penalty",) * 2
@@ -83,19 +83,19 @@ def test_a_comparison_leaves_nothing_in_the_history(user):
 def test_the_key_counts_wherever_the_focus_is(user, focus):
     window = user.window
     widget = {
-        "table": window.table,
+        "table": window.parts.table.table,
         "viewport": window.viewports[Side.SOURCE],
-        "slider": window.panel.slider,
+        "slider": window.parts.penalty.panel.slider,
     }[focus]
     widget.setFocus()
     hold(user, widget)
-    assert user.session.warping_penalty == 20
+    assert user.session.settings.penalty == 20
     let_go(user, widget)
-    assert user.session.warping_penalty == 5
+    assert user.session.settings.penalty == 5
 
 
 def test_a_name_with_a_b_in_it_can_be_typed(user):
-    field = user.window.landmarks.filter
+    field = user.window.parts.table.panel.filter
     field.setFocus()
     user.qtbot.keyClicks(field, "b")
     assert field.text() == "b"
@@ -108,9 +108,9 @@ def test_the_key_that_repeats_itself_changes_nothing(user):
         event = QKeyEvent(kind, Qt.Key.Key_B, Qt.KeyboardModifier.NoModifier, "b", True)
         QApplication.sendEvent(user.window, event)
         user.settle()
-        assert user.session.warping_penalty == 20
+        assert user.session.settings.penalty == 20
     let_go(user)
-    assert user.session.warping_penalty == 5
+    assert user.session.settings.penalty == 5
 
 
 def test_another_window_in_front_ends_it(user, qtbot):
@@ -121,7 +121,7 @@ def test_another_window_in_front_ends_it(user, qtbot):
     other.activateWindow()
     assert QTest.qWaitForWindowActive(other)
     user.settle()
-    assert user.session.warping_penalty == 5
+    assert user.session.settings.penalty == 5
     assert badge(user) == ""
     let_go(user)
     assert not user.editor.is_previewing
@@ -131,40 +131,40 @@ def test_a_click_while_it_is_held_ends_it_before_it_counts(user):
     hold(user)
     user.click(Side.SOURCE, user.free_place(Side.SOURCE))
     assert len(user.session.landmarks) == 21
-    assert user.session.warping_penalty == 5, "no preview slips into what is committed"
+    assert user.session.settings.penalty == 5, "no preview slips into what is committed"
     assert badge(user) == ""
     let_go(user)
-    assert user.session.warping_penalty == 5
+    assert user.session.settings.penalty == 5
 
 
 def test_undo_while_it_is_held_ends_it(user):
     hold(user)
     user.press(Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
-    assert user.session.warping_penalty == 20
+    assert user.session.settings.penalty == 20
     assert not user.editor.is_previewing
     let_go(user)
-    assert user.session.warping_penalty == 20
+    assert user.session.settings.penalty == 20
 
 
 def test_a_commit_from_elsewhere_while_it_is_held_stands(user):
     hold(user)
     user.editor.commit(edits.set_unit(user.editor.committed, "cm"), "Change unit")
     user.settle()
-    assert (user.session.unit, user.session.warping_penalty) == ("cm", 5)
+    assert (user.session.unit, user.session.settings.penalty) == ("cm", 5)
     assert badge(user) == ""
     let_go(user)
     assert user.session.unit == "cm"
 
 
 def test_during_a_drag_of_the_slider_the_key_waits(user):
-    slider = user.window.panel.slider
+    slider = user.window.parts.penalty.panel.slider
     share = slider.value() / slider.maximum()
     start = QPoint(round(slider.place_of(share)), slider.height() // 2)
     end = QPoint(200, slider.height() // 2)
     user.drag(slider, start, end, release=False)
-    sliding = user.session.warping_penalty
+    sliding = user.session.settings.penalty
     hold(user)
-    assert user.session.warping_penalty == sliding
+    assert user.session.settings.penalty == sliding
     let_go(user)
     QTest.mouseRelease(slider, Qt.MouseButton.LeftButton, pos=end)
     user.settle()
@@ -173,12 +173,12 @@ def test_during_a_drag_of_the_slider_the_key_waits(user):
 
 def test_the_menu_goes_back_to_the_previous_penalty_and_forth(user):
     user.trigger("swap_penalty")
-    assert user.session.warping_penalty == 20
+    assert user.session.settings.penalty == 20
     assert user.editor.undo_label == "Go back to previous penalty"
     user.trigger("swap_penalty")
-    assert user.session.warping_penalty == 5
+    assert user.session.settings.penalty == 5
     user.trigger("undo")
-    assert user.session.warping_penalty == 20
+    assert user.session.settings.penalty == 20
 
 
 def test_without_a_previous_penalty_the_key_says_so(user):
@@ -211,6 +211,6 @@ def test_the_previous_penalty_is_the_last_other_one_that_was_committed(acts):
         else:
             editor.commit(edits.set_penalty(editor.committed, act), "Change penalty")
         trail.follow()
-        seen.append(editor.committed.warping_penalty)
+        seen.append(editor.committed.settings.penalty)
         others = [penalty for penalty in seen if penalty != seen[-1]]
         assert trail.previous == (others[-1] if others else None)

@@ -18,7 +18,7 @@ from pinwarp.session import edits
 @pytest.fixture
 def panel(user):
     user.open_sample()
-    return user.window.panel
+    return user.window.parts.penalty.panel
 
 
 @pytest.fixture
@@ -51,7 +51,7 @@ def painted_marker(panel) -> float:
 
 def click_plot(user, x: float, y: float) -> None:
     QTest.mouseClick(
-        user.window.panel.plot,
+        user.window.parts.penalty.panel.plot,
         Qt.MouseButton.LeftButton,
         Qt.KeyboardModifier.NoModifier,
         QPoint(round(x), round(y)),
@@ -85,11 +85,11 @@ def test_a_click_on_the_curve_takes_the_penalty_there(user, panel):
     plot = panel.plot
     x = plot.place_of(0.4)
     click_plot(user, x, plot.height() / 2)
-    flexibility = panel.plot.plotted.factor.flexibility(user.session.warping_penalty)
+    flexibility = panel.plot.plotted.factor.flexibility(user.session.settings.penalty)
     assert flexibility == pytest.approx(0.6, abs=0.005)
     assert abs(handle_centre(panel) - x) <= 2
     user.trigger("undo")
-    assert user.session.warping_penalty == 0
+    assert user.session.settings.penalty == 0
 
 
 def test_hovering_tells_the_figures_there(user, panel):
@@ -101,7 +101,7 @@ def test_hovering_tells_the_figures_there(user, panel):
     assert "flexibility 50%" in reading
     assert "leave-one-out 4.3 mm" in reading
     assert "residual 1.51 mm" in reading
-    QTest.mouseMove(user.window.table, QPoint(5, 5))
+    QTest.mouseMove(user.window.parts.table.table, QPoint(5, 5))
     user.qtbot.waitUntil(lambda: plot.grab().toImage() == resting)
 
 
@@ -111,18 +111,18 @@ def test_the_suggested_penalty_is_taken_by_its_button_and_undone(user, noisy_pan
     assert button.text() == f"Use suggested: {suggested:.3g} mm"
     QTest.mouseClick(button, Qt.MouseButton.LeftButton)
     user.settle()
-    assert user.session.warping_penalty == suggested
+    assert user.session.settings.penalty == suggested
     assert not button.isEnabled()
     user.trigger("undo")
-    assert user.session.warping_penalty == 0
+    assert user.session.settings.penalty == 0
     user.press(Qt.Key.Key_T)
-    assert user.session.warping_penalty == suggested
+    assert user.session.settings.penalty == suggested
 
 
 def test_a_click_on_its_sign_takes_exactly_the_suggested_penalty(user, noisy_panel):
     at = noisy_panel.plot.suggested_place()
     click_plot(user, at.x() + 3, at.y())
-    assert user.session.warping_penalty == noisy_panel.plot.plotted.curve.suggested
+    assert user.session.settings.penalty == noisy_panel.plot.plotted.curve.suggested
 
 
 def test_the_least_error_is_where_the_sign_is(user, noisy_panel):
@@ -166,18 +166,18 @@ def test_below_five_pairs_there_is_no_curve(user, panel):
         user.trigger("delete_landmark")
     assert panel.plot.plotted is None
     click_plot(user, panel.plot.width() / 2, 50)
-    assert user.session.warping_penalty == 0
+    assert user.session.settings.penalty == 0
 
 
 def test_the_published_convention_has_the_curve_but_no_suggestion(user, noisy_panel):
     noisy_panel.convention.setFocus()
     user.press(Qt.Key.Key_Down, widget=noisy_panel.convention)
-    assert user.session.convention is PenaltyConvention.OPYNSIM
+    assert user.session.settings.convention is PenaltyConvention.OPYNSIM
     assert "regularising" in noisy_panel.plot.plotted.title
     assert not noisy_panel.suggested.isEnabled()
     assert len(noisy_panel.slider.poles) > 0
     user.press(Qt.Key.Key_T)
-    assert user.session.warping_penalty == 0
+    assert user.session.settings.penalty == 0
 
 
 def test_the_curve_can_be_put_away_for_the_bones(user, panel):

@@ -30,7 +30,7 @@ class Judge(TableUser):
 
     @property
     def findings(self):
-        return self.window.findings
+        return self.window.parts.findings.panel
 
     def said_by(self, row):
         return row.sentence.text().replace("\u200b", "")
@@ -326,7 +326,7 @@ def test_two_selected_pairs_are_swapped_from_the_row_menu(sample):
 
 
 def slide_halfway(judge, release=True):
-    slider = judge.window.panel.slider
+    slider = judge.window.parts.penalty.panel.slider
     start = QPoint(8, slider.height() // 2)
     judge.user.drag(slider, start, slider.rect().center(), release=release)
 
@@ -338,9 +338,9 @@ def test_arrows_grow_with_the_penalty_and_are_not_there_at_0(sample):
     arrows = sample.arrows(left_out=False)
     assert set(arrows) == {pair.name for pair in sample.session.pairs}
     lengths = [np.linalg.norm(np.subtract(a.start, a.end)) for a in arrows.values()]
-    residuals = sample.window.presenter.result.residuals
+    residuals = sample.window.parts.warps.result.residuals
     assert lengths == pytest.approx(residuals.tolist())
-    QTest.mouseRelease(sample.window.panel.slider, LEFT)
+    QTest.mouseRelease(sample.window.parts.penalty.panel.slider, LEFT)
     sample.user.trigger("undo")
     assert sample.all_arrows == ()
 
@@ -400,7 +400,7 @@ def test_both_arrows_follow_a_landmark_that_is_dragged(sample):
         assert arrow.end == here
     residual = np.linalg.norm(np.subtract(sample.arrows(False)[marker.name].start, here))
     row = [pair.name for pair in sample.session.pairs].index(marker.name)
-    assert residual == pytest.approx(sample.window.presenter.result.residuals[row])
+    assert residual == pytest.approx(sample.window.parts.warps.result.residuals[row])
     QTest.keyClick(viewport, Qt.Key.Key_Escape)
     sample.user.settle()
     assert sample.session.landmark(marker.name).destination == marker.position
@@ -439,3 +439,43 @@ def test_the_help_menu_explains_the_figures(sample):
     assert title == "About the quality figures"
     for word in ("residual", "leave-one-out", "standardised", "suspect", "isolated"):
         assert word in text
+
+
+def crowd_of(sample, places):
+    """Bring in pairs with source places that repeat, and ends that disagree."""
+    ends = places + np.random.default_rng(1).normal(size=places.shape)
+    marks = tuple(
+        Landmark(f"q{i}", as_position(a), as_position(b))
+        for i, (a, b) in enumerate(zip(places, ends, strict=True))
+    )
+    editor = sample.user.editor
+    editor.commit(edits.import_pairs(editor.committed, marks), "Import")
+    sample.user.settle()
+
+
+def test_of_many_findings_the_gravest_are_shown_and_the_rest_is_counted(sample):
+    crowd_of(sample, np.repeat(60 * np.random.default_rng(0).normal(size=(60, 3)), 2, axis=0))
+    panel = sample.findings
+    assert sum(row.isVisibleTo(panel) for row in panel.rows) == 50
+    assert panel.more.isVisibleTo(panel)
+    told = int(panel.more.text().split()[1])
+    assert told >= 10
+    assert sum(int(words.split()[0]) for words in panel.header.text().split(", ")) == 50 + told
+    # Beyond the rows there are still findings to step to.
+    for _ in range(52):
+        sample.window.actions_by_key["next_finding"].trigger()
+    sample.user.editor.undo()
+    sample.user.settle()
+    assert not panel.more.isVisibleTo(panel)
+
+
+def test_many_pairs_at_one_place_are_one_row(sample):
+    crowd_of(sample, np.tile(np.random.default_rng(0).normal(size=3), (200, 1)))
+    found = [x for x in sample.findings.rows if "same place" in sample.said_by(x)]
+    assert len(found) == 1
+    assert "q0, q1, q2 and 197 more lie at the same place" in sample.said_by(found[0])
+    assert len(found[0].choice.actions()) == 21
+    found[0].choice.actions()[-1].trigger()
+    sample.user.settle()
+    taking_part = {x.name for x in sample.session.pairs}
+    assert {x for x in taking_part if x.startswith("q")} == {"q0"}

@@ -71,7 +71,7 @@ def click_a_new_landmark(user) -> None:
 @pytest.fixture
 def crashed(user, sample_copy, state_folder, tmp_path):
     """The folder that is left when the window dies with a click that was not saved."""
-    user.window.documents.open_session(sample_copy)
+    user.window.parts.documents.open_session(sample_copy)
     user.settle()
     click_a_new_landmark(user)
     wait_until_kept(user, state_folder)

@@ -22,7 +22,7 @@ def test_a_report_is_one_page_with_both_views_and_the_numbers_lie_beside_it(user
     rows = list(csv.DictReader((tmp_path / "femur.csv").read_text(encoding="utf-8").splitlines()))
     left_out = {row["item"]: float(row["value"]) for row in rows if row["quantity"] == "left out"}
     assert set(left_out) == {pair.name for pair in user.session.pairs}
-    assert user.window.quality.quality.left_out.distances.tolist() == [*left_out.values()]
+    assert user.window.parts.quality.quality.left_out.distances.tolist() == [*left_out.values()]
     far = {row["item"]: row["value"] for row in rows if row["quantity"] == "maximum"}
     assert set(far) == {"source to destination", "destination to source"}
     assert "femur.csv" in user.window.statusBar().currentMessage()

@@ -24,7 +24,7 @@ CONTROL = Qt.KeyboardModifier.ControlModifier
 
 
 def open_and_edit(user, path) -> None:
-    user.window.documents.open_session(path)
+    user.window.parts.documents.open_session(path)
     user.settle()
     user.click(SOURCE, user.free_place(SOURCE))
     assert user.editor.is_dirty
@@ -45,7 +45,7 @@ def test_a_session_open_in_another_window_is_asked_about(user, another_user, sam
     # The journal of the other window speaks a moment after it has opened the session.
     another_user.qtbot.waitUntil(
         lambda: (
-            (found := another_user.window.recovery.window_with(sample_copy)) is not None
+            (found := another_user.window.parts.recovery.window_with(sample_copy)) is not None
             and found.has_unsaved_work
         ),
         timeout=10_000,
@@ -62,7 +62,7 @@ def test_a_session_open_in_another_window_is_asked_about(user, another_user, sam
 
 def test_a_window_may_open_its_own_session_again(user, sample_copy):
     for _ in range(2):
-        user.window.documents.open_session(sample_copy)
+        user.window.parts.documents.open_session(sample_copy)
         user.settle()
         user.qtbot.wait(50)
     assert user.dialogs.open_twice_questions == []

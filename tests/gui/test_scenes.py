@@ -14,7 +14,7 @@ from pinwarp.gui.scene.drawables import Badge, Bone, Drawable, GridLines, Hint, 
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.views.scenes import Scenes
 from pinwarp.session import edits
-from pinwarp.session.editor import GridKind
+from pinwarp.session.view import GridKind
 
 SOURCE, DESTINATION = Side
 
@@ -68,7 +68,7 @@ def test_ten_previews_and_a_drop_show_no_scene_twice(sample):
     for step in range(1, 11):
         sample.editor.preview(moved(sample, 0.3 * step))
         sample.qtbot.waitUntil(
-            lambda: window.presenter.is_settled and scenes.is_settled, timeout=30_000
+            lambda: window.parts.warps.is_settled and scenes.is_settled, timeout=30_000
         )
     sample.editor.commit(moved(sample, 3.0), "Move")
     sample.settle()
@@ -149,5 +149,5 @@ def test_a_drag_ends_with_the_landmark_the_warp_and_the_table_agreeing(sample):
     )
     sample.settle()
     shown = there.drawn(Overlay).full.vertices
-    assert np.allclose(shown, sample.window.presenter.result.vertices)
+    assert np.allclose(shown, sample.window.parts.warps.result.vertices)
     assert np.allclose(there.overlay_points, shown)

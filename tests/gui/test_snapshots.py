@@ -17,7 +17,7 @@ from pinwarp.session import edits
 @pytest.fixture
 def strip(user):
     user.open_sample()
-    return user.window.snapshot_strip
+    return user.window.parts.snapshots.strip
 
 
 def commit(user, penalty):
@@ -54,7 +54,7 @@ def test_a_snapshot_shows_the_bones_with_penalty_and_figures(user, strip):
     user.press(Qt.Key.Key_P)
     shot = strip.tiles[0].snapshot
     assert len(colours(shot.picture)) > 100, "a bone is no flat plate"
-    figures = user.window.panel.figures
+    figures = user.window.parts.penalty.panel.figures
     words = strip.tiles[0].words.text()
     assert "<b>40 mm</b>" in words
     assert f"{shot.flexibility:.0%}" in figures.flexibility.text()
@@ -67,9 +67,9 @@ def test_a_click_on_a_snapshot_takes_its_penalty_and_can_be_undone(user, strip):
     user.press(Qt.Key.Key_P)
     commit(user, 3.0)
     click(user, strip.tiles[0])
-    assert user.session.warping_penalty == 40
+    assert user.session.settings.penalty == 40
     user.trigger("undo")
-    assert user.session.warping_penalty == 3
+    assert user.session.settings.penalty == 3
 
 
 def test_a_snapshot_of_pairs_that_changed_says_so_until_they_are_back(user, strip):
@@ -97,15 +97,15 @@ def test_a_sweep_takes_five_and_leaves_the_session_as_it_was(user, strip, tmp_pa
     assert not editor.is_previewing
     shots = [tile.snapshot for tile in strip.tiles]
     assert [shot.flexibility for shot in shots] == pytest.approx([1, 0.75, 0.5, 0.25, 0])
-    assert shots[0].inputs.penalty == 0
-    assert math.isinf(shots[-1].inputs.penalty)
+    assert shots[0].inputs.settings.penalty == 0
+    assert math.isinf(shots[-1].inputs.settings.penalty)
     residuals = [shot.residual for shot in shots]
     assert residuals == sorted(residuals)
     assert all(a.picture != b.picture for a, b in pairwise(shots))
     assert len({shot.picture.size().toTuple() for shot in shots}) == 1
     assert "Affine fit" in strip.tiles[-1].words.text()
     user.trigger("redo")
-    assert user.session.warping_penalty == 9
+    assert user.session.settings.penalty == 9
 
 
 def test_whoever_acts_during_a_sweep_stops_it(user, strip):
@@ -123,7 +123,7 @@ def test_a_commit_during_a_sweep_stands(user, strip):
     user.window.actions_by_key["sweep"].trigger()
     user.editor.commit(edits.set_penalty(user.editor.committed, 11.0), "Change penalty")
     user.settle()
-    assert user.session.warping_penalty == 11
+    assert user.session.settings.penalty == 11
     assert not user.editor.is_previewing
     assert strip.tiles == []
 
@@ -154,4 +154,4 @@ def test_without_a_warp_there_is_nothing_to_picture(user):
     assert "no warp" in user.window.statusBar().currentMessage()
     user.trigger("sweep")
     assert "five pairs" in user.window.statusBar().currentMessage()
-    assert not user.window.snapshot_strip.isVisible()
+    assert not user.window.parts.snapshots.strip.isVisible()

@@ -20,7 +20,7 @@ from pinwarp.io.mesh_formats.ply import write_ply
 from pinwarp.io.meshes import read_mesh
 from pinwarp.io.samples import assets_folder
 from pinwarp.session import edits
-from pinwarp.session.editor import LinkMode
+from pinwarp.session.view import LinkMode
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
 # The destination lies on its back in another corner of the room, a tenth larger, in metres.
@@ -38,8 +38,8 @@ def turned(user, tmp_path):
     mesh = read_mesh(path).mesh
     other = tmp_path / "turned.ply"
     write_ply(other, Mesh(TURNED.apply(mesh.vertices), mesh.faces))
-    user.window.documents.open_mesh(SOURCE, path)
-    user.window.documents.open_mesh(DESTINATION, other)
+    user.window.parts.documents.open_mesh(SOURCE, path)
+    user.window.parts.documents.open_mesh(DESTINATION, other)
     user.settle()
     return user
 
@@ -211,12 +211,12 @@ def test_each_view_keeps_its_own_clipping_range(turned):
 
 
 def test_an_empty_view_neither_follows_nor_leads(user):
-    user.window.documents.open_mesh(SOURCE, assets_folder() / "femur_generic.ply")
+    user.window.parts.documents.open_mesh(SOURCE, assets_folder() / "femur_generic.ply")
     user.settle()
     before = pose(user, DESTINATION)
     orbit(user, SOURCE)
     assert pose(user, DESTINATION).is_at(before)
-    user.window.documents.open_mesh(DESTINATION, assets_folder() / "femur_subject.ply")
+    user.window.parts.documents.open_mesh(DESTINATION, assets_folder() / "femur_subject.ply")
     user.settle()
     there = user.window.viewports[DESTINATION]
     seen = there.project(user.session.mesh(DESTINATION).vertices)
@@ -398,7 +398,7 @@ def test_landmarks_on_the_part_that_is_cut_away_are_faint_and_cannot_be_grabbed(
     assert not layer.hidden()[0]
     user.press(Qt.Key.Key_X)
     assert layer.hidden()[0]
-    slider = user.window.view_controls.section_slider
+    slider = user.window.parts.views.section_slider
     user.drag(slider, slider.rect().center(), QPoint(2, slider.height() // 2))
     assert user.editor.view.section == 0
     assert not layer.hidden()[0]
@@ -479,7 +479,7 @@ def test_swapping_the_sides_takes_every_position_with_its_bone_and_can_be_undone
 
 
 def test_a_mirrored_source_is_saved_and_comes_back_the_same(user, sample_copy):
-    user.window.documents.open_session(sample_copy)
+    user.window.parts.documents.open_session(sample_copy)
     user.settle()
     mesh, landmark = user.session.mesh(SOURCE), user.session.landmarks[0]
     bytes_before = user.session.source.path.read_bytes()
@@ -496,7 +496,7 @@ def test_a_mirrored_source_is_saved_and_comes_back_the_same(user, sample_copy):
     assert "# source_mirrored: x\n" in sample_copy.read_text(encoding="utf-8")
     saved = user.session
     user.trigger("open_sample")
-    user.window.documents.open_session(sample_copy)
+    user.window.parts.documents.open_session(sample_copy)
     user.settle()
     assert np.array_equal(user.session.mesh(SOURCE).vertices, mirrored.vertices)
     assert np.array_equal(user.session.mesh(SOURCE).faces, mirrored.faces)

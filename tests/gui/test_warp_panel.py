@@ -33,7 +33,7 @@ LEFT = Qt.MouseButton.LeftButton
 def panel(user):
     user.open_sample()
     show_panel(user)
-    return user.window.warp_panel
+    return user.window.parts.warp.panel
 
 
 def show_panel(user):
@@ -86,7 +86,7 @@ def aligned_source(user):
 
 def warp_of(session):
     factor = factorise(positions(session.pairs, SOURCE))
-    return factor, solve(factor, positions(session.pairs, DESTINATION), session.warping_penalty)
+    return factor, solve(factor, positions(session.pairs, DESTINATION), session.settings.penalty)
 
 
 # The panel
@@ -95,19 +95,19 @@ def warp_of(session):
 def test_the_panel_stands_behind_the_landmarks(user):
     docks = {name: user.window.findChild(QDockWidget, name) for name in ("landmarks", "warp")}
     assert docks["warp"] in user.window.tabifiedDockWidgets(docks["landmarks"])
-    assert not user.window.landmarks.table.visibleRegion().isEmpty()
-    assert user.window.warp_panel.components.visibleRegion().isEmpty()
+    assert not user.window.parts.table.panel.table.visibleRegion().isEmpty()
+    assert user.window.parts.warp.panel.components.visibleRegion().isEmpty()
     show_panel(user)
-    assert not user.window.warp_panel.components.visibleRegion().isEmpty()
-    assert user.window.landmarks.table.visibleRegion().isEmpty()
+    assert not user.window.parts.warp.panel.components.visibleRegion().isEmpty()
+    assert user.window.parts.table.panel.table.visibleRegion().isEmpty()
 
 
 @pytest.mark.parametrize("unit", ["mm", "m"])
 def test_nothing_is_cut_off_in_a_small_window(user, panel, unit):
     user.window.resize(1280, 720)
     while user.session.unit != unit:
-        user.window.panel.unit.setFocus()
-        user.press(Qt.Key.Key_Down, widget=user.window.panel.unit)
+        user.window.parts.penalty.panel.unit.setFocus()
+        user.press(Qt.Key.Key_Down, widget=user.window.parts.penalty.panel.unit)
     user.settle()
     assert not panel.horizontalScrollBar().isVisible()
     assert not panel.verticalScrollBar().isVisible()
@@ -119,7 +119,7 @@ def test_nothing_is_cut_off_in_a_small_window(user, panel, unit):
 def test_a_click_on_a_part_applies_it_to_screen_and_export_and_can_be_undone(user, panel, tmp_path):
     whole = overlay(user)
     choose(user, panel, Components.RIGID)
-    assert user.session.components is Components.RIGID
+    assert user.session.settings.components is Components.RIGID
     expected = aligned_source(user)
     assert np.allclose(overlay(user), expected, atol=1e-3)
     assert np.allclose(exported(user, tmp_path), expected)
@@ -137,7 +137,7 @@ def test_the_menu_and_the_arrow_keys_choose_as_well(user, panel):
     assert button.isChecked()
     button.setFocus()
     user.press(Qt.Key.Key_Down, widget=button)
-    assert user.session.components is Components.SIMILARITY
+    assert user.session.settings.components is Components.SIMILARITY
 
 
 def test_each_part_says_what_it_leaves_between_the_pairs(user, panel):
@@ -147,11 +147,11 @@ def test_each_part_says_what_it_leaves_between_the_pairs(user, panel):
     affine, similarity, rigid = (f"{x:.2f} mm" for x in (4.73, 4.99, 16.81))
     assert said() == ["0 mm", "0 mm", affine, similarity, rigid]
     assert panel.components.rows[Components.RIGID].bar.share == 1
-    user.window.panel.slider.setFocus()
-    user.press(Qt.Key.Key_End, widget=user.window.panel.slider)
+    user.window.parts.penalty.panel.slider.setFocus()
+    user.press(Qt.Key.Key_End, widget=user.window.parts.penalty.panel.slider)
     assert said() == [affine, affine, affine, similarity, rigid], "at the affine end"
-    user.window.panel.unit.setFocus()
-    user.press(Qt.Key.Key_Down, widget=user.window.panel.unit)
+    user.window.parts.penalty.panel.unit.setFocus()
+    user.press(Qt.Key.Key_Down, widget=user.window.parts.penalty.panel.unit)
     assert said()[-1] == "16.81 cm"
 
 
@@ -167,13 +167,13 @@ def test_the_blend_is_seen_while_it_is_dragged_and_is_one_step_to_undo(user, pan
     assert panel.blend_value.text() == "50%"
     assert np.allclose(overlay(user), half_way, atol=1e-3)
     assert user.editor.undo_label == label
-    assert user.editor.committed.blend == 1
+    assert user.editor.committed.settings.blend == 1
     QTest.mouseRelease(panel.blend, LEFT, pos=handle_at(panel.blend, 50))
     user.settle()
     assert user.editor.undo_label == "Blend 50%"
     assert np.allclose(exported(user, tmp_path), overlay(user), atol=1e-3)
     assert np.allclose(overlay(user), half_way, atol=1e-3)
-    assert "50% of the way" in user.window.warp_presenter.note.text()
+    assert "50% of the way" in user.window.parts.warp.note.text()
     user.trigger("undo")
     assert user.editor.undo_label == label
     assert panel.blend.value() == 100
@@ -184,10 +184,10 @@ def test_steps_of_the_keyboard_are_one_step_to_undo(user, panel):
     panel.blend.setFocus()
     for _ in range(3):
         user.press(Qt.Key.Key_Left, widget=panel.blend)
-    assert user.session.blend == pytest.approx(0.97)
+    assert user.session.settings.blend == pytest.approx(0.97)
     assert user.editor.undo_label == "Blend 97%"
     user.trigger("undo")
-    assert user.session.blend == 1
+    assert user.session.settings.blend == 1
 
 
 def test_a_drag_after_the_keyboard_is_a_step_of_its_own(user, panel):
@@ -195,7 +195,7 @@ def test_a_drag_after_the_keyboard_is_a_step_of_its_own(user, panel):
     user.press(Qt.Key.Key_PageDown, widget=panel.blend)
     slide(user, panel.blend, 20)
     user.trigger("undo")
-    assert user.session.blend == pytest.approx(0.9)
+    assert user.session.settings.blend == pytest.approx(0.9)
 
 
 def test_the_blend_goes_to_what_is_applied(user, panel):
@@ -213,13 +213,13 @@ def test_playing_goes_there_and_back_and_leaves_no_trace(user, panel):
     seen = []
 
     def remember(session):
-        seen.append(session.blend)
+        seen.append(session.settings.blend)
 
     user.editor.session_changed.connect(remember)
     QTest.mouseClick(panel.play, LEFT)
-    assert user.window.warp_presenter.player.is_playing
-    assert "Esc" in user.window.warp_presenter.note.text()
-    user.qtbot.waitUntil(lambda: not user.window.warp_presenter.player.is_playing, timeout=60_000)
+    assert user.window.parts.warp.player.is_playing
+    assert "Esc" in user.window.parts.warp.note.text()
+    user.qtbot.waitUntil(lambda: not user.window.parts.warp.player.is_playing, timeout=60_000)
     user.settle()
     user.editor.session_changed.disconnect(remember)
     there = np.linspace(0, 1, FRAMES + 1)
@@ -228,14 +228,14 @@ def test_playing_goes_there_and_back_and_leaves_no_trace(user, panel):
     assert user.editor.undo_label == label
     assert not user.editor.is_dirty
     assert np.allclose(overlay(user), whole)
-    assert user.window.warp_presenter.note.text() == ""
+    assert user.window.parts.warp.note.text() == ""
     assert not user.window.actions_by_key["play_blend"].isChecked()
 
 
 def play(user):
     user.window.viewports[SOURCE].setFocus()
     QTest.keyClick(user.window, Qt.Key.Key_B, Qt.KeyboardModifier.ShiftModifier)
-    user.qtbot.waitUntil(lambda: 0 < user.session.blend < 1, timeout=10_000)
+    user.qtbot.waitUntil(lambda: 0 < user.session.settings.blend < 1, timeout=10_000)
     assert user.editor.is_previewing
 
 
@@ -244,7 +244,7 @@ def test_escape_stops_playing_and_does_nothing_else(user, panel):
     session, selection = user.editor.committed, user.editor.selection
     play(user)
     user.press(Qt.Key.Key_Escape, widget=user.window.viewports[SOURCE])
-    assert not user.window.warp_presenter.player.is_playing
+    assert not user.window.parts.warp.player.is_playing
     assert user.session is session
     assert user.editor.selection == selection
 
@@ -253,7 +253,7 @@ def test_a_click_stops_playing_and_places_nothing(user, panel):
     session, at = user.editor.committed, user.free_place(SOURCE)
     play(user)
     user.click(SOURCE, at)
-    assert not user.window.warp_presenter.player.is_playing
+    assert not user.window.parts.warp.player.is_playing
     assert user.session is session
 
 
@@ -262,16 +262,16 @@ def test_the_button_stops_what_it_began(user, panel):
     play(user)
     QTest.mouseClick(panel.play, LEFT)
     user.settle()
-    assert not user.window.warp_presenter.player.is_playing
+    assert not user.window.parts.warp.player.is_playing
     assert user.session is session
 
 
 def test_what_is_done_meanwhile_stops_playing_and_stays(user, panel):
     play(user)
     user.trigger("apply_affine")
-    assert not user.window.warp_presenter.player.is_playing
-    assert user.session.components is Components.AFFINE
-    assert user.session.blend == 1
+    assert not user.window.parts.warp.player.is_playing
+    assert user.session.settings.components is Components.AFFINE
+    assert user.session.settings.blend == 1
 
 
 def test_a_dialog_stops_playing(user, panel):
@@ -280,7 +280,7 @@ def test_a_dialog_stops_playing(user, panel):
     dialog = QDialog(user.window)
     dialog.open()
     user.settle()
-    assert not user.window.warp_presenter.player.is_playing
+    assert not user.window.parts.warp.player.is_playing
     assert user.session is session
     dialog.close()
 
@@ -373,7 +373,7 @@ def test_each_line_of_the_figures_says_what_it_means(user, panel):
 
 def test_without_pairs_and_with_few_the_panel_says_what_is_missing(user):
     show_panel(user)
-    panel = user.window.warp_panel
+    panel = user.window.parts.warp.panel
     assert panel.sentence.text().startswith("No pair yet")
     assert not panel.figures.isVisible()
     assert not panel.copy.isVisible()

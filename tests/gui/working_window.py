@@ -14,11 +14,11 @@ import time
 from pathlib import Path
 
 import numpy as np
-from qtpy.QtCore import QPointF, QSettings, Qt, QTimer
+from qtpy.QtCore import QPointF, Qt, QTimer
 from qtpy.QtTest import QTest
 
 from pinwarp.core.landmarks import Side
-from pinwarp.gui.app import begin, make_application
+from pinwarp.gui.app import begin, make_application, no_settings
 from pinwarp.gui.files.documents import Opening
 from pinwarp.gui.window.main_window import MainWindow
 from pinwarp.io.session_file import SessionRecord
@@ -90,7 +90,7 @@ class Worker:
 def main(session: Path, state_folder: Path) -> None:
     """Open the window on a session and work on it for ever."""
     application = make_application()
-    settings = QSettings(os.devnull, QSettings.Format.IniFormat)
+    settings = no_settings()
     window = MainWindow(settings, state_folder=state_folder)
     window.resize(1000, 640)
     window.show()

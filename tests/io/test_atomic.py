@@ -2,12 +2,15 @@ from __future__ import annotations
 
 import errno
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
+from pinwarp.core.errors import words_of
 from pinwarp.io import atomic
-from pinwarp.io.atomic import atomic_path, write_atomically
+from pinwarp.io.atomic import atomic_path, sweep, write_atomically
 
 
 def test_a_file_is_written_and_nothing_else_is_left(tmp_path: Path) -> None:
@@ -133,3 +136,96 @@ def test_a_missing_folder_or_a_folder_as_target_is_an_os_error(tmp_path: Path) -
     with pytest.raises(IsADirectoryError):
         write_atomically(tmp_path, "")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_an_error_of_the_system_names_the_file_and_not_the_temporary_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    target = tmp_path / "femur.csv"
+
+    def full(_handle: int) -> None:
+        # As the system says it of a write: without a name.
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(atomic.os, "fsync", full)
+    with pytest.raises(OSError, match="No space left") as found:
+        write_atomically(target, "new")
+    assert words_of(found.value) == f"{target}: No space left on device."
+
+    def forbidden(path: Path, *_: object) -> int:
+        raise PermissionError(errno.EACCES, "Permission denied", str(path))
+
+    monkeypatch.setattr(atomic.os, "open", forbidden)
+    with pytest.raises(PermissionError) as found:
+        write_atomically(target, "new")
+    assert words_of(found.value) == f"{target}: Permission denied."
+
+
+def test_words_of_another_writer_are_kept(tmp_path: Path) -> None:
+    def fail() -> None:
+        with atomic_path(tmp_path / "a.png"):
+            raise OSError("Is the disk full?")
+
+    with pytest.raises(OSError, match=r"^Is the disk full\?$"):
+        fail()
+
+
+def left_behind(path: Path, age: float = 2 * atomic.SWEPT_AFTER) -> Path:
+    path.write_text("half")
+    then = path.stat().st_mtime - age
+    os.utime(path, (then, then))
+    return path
+
+
+def test_what_a_killed_writer_left_is_swept_when_the_next_one_is_done(tmp_path: Path) -> None:
+    with subprocess.Popen(
+        [sys.executable, "-c", WRITE_HALF, str(tmp_path / "femur.pinwarp.csv")],
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as writer:
+        assert writer.stdout.readline() == "half\n"
+        writer.kill()
+    (left,) = tmp_path.iterdir()
+    write_atomically(tmp_path / "b.csv", "")
+    assert left.exists(), "its writer may still be at it"
+    then = left.stat().st_mtime - 2 * atomic.SWEPT_AFTER
+    os.utime(left, (then, then))
+    write_atomically(tmp_path / "b.csv", "")
+    assert [path.name for path in tmp_path.iterdir()] == ["b.csv"]
+
+
+WRITE_HALF = (
+    "import sys, time; from pinwarp.io.atomic import atomic_path\n"
+    "with atomic_path(sys.argv[1]) as temporary:\n"
+    "    temporary.write_text('half'); print('half', flush=True); time.sleep(60)"
+)
+
+
+def test_only_what_is_old_and_ours_is_swept(tmp_path: Path) -> None:
+    ours = [".pinwarp-0123456789ab", ".pinwarp-0123456789ab.stl"]
+    others = [
+        ".pinwarp-0123456789ab.stl.bak",
+        ".pinwarp-0123456789AB.stl",
+        ".pinwarp-settings",
+        "pinwarp-0123456789ab.stl",
+        ".pinwarp-0123456789abc.stl",
+        "copy of .pinwarp-0123456789ab.stl",
+    ]
+    for name in (*ours, *others):
+        left_behind(tmp_path / name)
+    left_behind(tmp_path / ".pinwarp-aaaaaaaaaaaa.csv", age=60)
+    (tmp_path / ".pinwarp-bbbbbbbbbbbb").mkdir()
+    (tmp_path / ".pinwarp-cccccccccccc").symlink_to(tmp_path / ".pinwarp-settings")
+    for name in (".pinwarp-bbbbbbbbbbbb", ".pinwarp-cccccccccccc"):
+        os.utime(tmp_path / name, (0, 0), follow_symlinks=False)
+    inner = tmp_path / "inner"
+    inner.mkdir()
+    left_behind(inner / ours[0])
+    before = {path.name for path in tmp_path.iterdir()}
+    sweep(tmp_path)
+    assert before - {path.name for path in tmp_path.iterdir()} == set(ours)
+    assert (inner / ours[0]).exists()
+
+
+def test_a_folder_that_cannot_be_looked_into_is_left_alone(tmp_path: Path) -> None:
+    sweep(tmp_path / "there is none")

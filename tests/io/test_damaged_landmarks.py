@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Side
+from pinwarp.core.settings import WarpSettings
 from pinwarp.io.csv_text import lines_of
 from pinwarp.io.file_names import is_session
 from pinwarp.io.landmark_files import FORMATS, read_landmarks, write_landmarks
@@ -45,7 +46,7 @@ WITHOUT_LINE = re.compile(
 def valid_files(folder: Path) -> list[Path]:
     """A session, the example of every format, and a file of every format as we write it."""
     paths = [folder / "ours.pinwarp.csv"]
-    write_session(paths[0], SessionRecord(LANDMARKS, warping_penalty=0.0042, unit="m"))
+    write_session(paths[0], SessionRecord(LANDMARKS, settings=WarpSettings(0.0042), unit="m"))
     for number, example in enumerate(EXAMPLES):
         paths.append(folder / f"example{number}{example.suffix}")
         paths[-1].write_bytes(example.text.encode())

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import filelock
 import pytest
 
 from pinwarp.io import file_lock
@@ -60,10 +61,44 @@ def test_a_missing_file_cannot_be_locked(tmp_path: Path) -> None:
 def test_a_file_system_without_locks_stands_in_nobodys_way(
     path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def unsupported(_handle: int) -> None:
+    def unsupported(_handle: int, *, blocking: bool) -> bool:
         raise OSError(errno.ENOSYS, "Function not implemented")
 
-    monkeypatch.setattr(file_lock, "_lock", unsupported)
+    monkeypatch.setattr(file_lock, "lock_descriptor", unsupported)
     lock = FileLock.take(path)
     assert lock is not None
     lock.release()
+
+
+def test_it_is_the_lock_that_other_programs_know(path: Path) -> None:
+    other = filelock.FileLock(path, timeout=0, fallback_to_soft=False)
+    with other:
+        assert FileLock.take(path) is None
+    lock = FileLock.take(path)
+    assert lock is not None
+    with pytest.raises(filelock.Timeout):
+        other.acquire()
+    lock.release()
+
+
+def test_a_lock_leaves_nothing_behind_and_changes_nothing(path: Path) -> None:
+    path.write_text("mine")
+    lock = FileLock.take(path)
+    assert lock is not None
+    lock.release()
+    assert [found.name for found in path.parent.iterdir()] == ["lock"]
+    assert path.read_text() == "mine"
+
+
+def test_a_folder_for_reading_only_can_be_locked_and_an_unreadable_file_says_so(
+    path: Path,
+) -> None:
+    path.parent.chmod(0o500)
+    try:
+        lock = FileLock.take(path)
+        assert lock is not None
+        lock.release()
+    finally:
+        path.parent.chmod(0o700)
+    with pytest.raises(IsADirectoryError):
+        FileLock.take(path.parent)

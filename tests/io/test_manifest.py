@@ -78,11 +78,6 @@ def test_a_name_that_was_quoted_against_formulas_is_itself_again(tmp_path):
         (f"{HEADER}\nCON,a.csv\n", 2, "No file can be called 'CON'"),
         (f"{HEADER}\n{'a' * 300},a.csv\n", 2, "too long"),
         (f"{HEADER}\n,a.csv\n", 2, "The name is missing"),
-        (f"{HEADER}\nanna\n", 2, "'anna' has no destination_landmarks"),
-        (f"{HEADER}\nanna,a.csv,surplus\n", 2, "3 cells for 2 columns"),
-        (f"{HEADER},penalty\nanna,a.csv,-1\n", 2, "is negative"),
-        (f"{HEADER},penalty\nanna,a.csv,much\n", 2, "'much' is not a number"),
-        (f"{HEADER},components\nanna,a.csv,elastic\n", 2, "'elastic' are none of full"),
         (f'{HEADER}\n"anna,a.csv\n', 2, "quotes do not match"),
     ],
 )
@@ -90,6 +85,53 @@ def test_what_is_wrong_is_told_with_its_line(tmp_path, text, line, words):
     error = problem(tmp_path, text)
     assert words in error.reason
     assert error.line == line
+
+
+@pytest.mark.parametrize(
+    ("header", "row", "words"),
+    [
+        ("", "anna", "There is no destination_landmarks."),
+        ("", "anna,a.csv,surplus", "The row has 3 cells for 2 columns."),
+        (
+            ",penalty",
+            "anna,a.csv,-1",
+            "In the column 'penalty': the warping penalty -1 is negative.",
+        ),
+        (",penalty", "anna,a.csv,much", "In the column 'penalty': 'much' is not a number."),
+        (",penalty", "anna,a.csv,nan", "In the column 'penalty': 'nan' is not a finite number."),
+        (",penalty", f"anna,a.csv,{'9' * 1000}", f"'{'9' * 57}...' is not a finite"),
+        (
+            ",components",
+            "anna,a.csv,elastic",
+            "In the column 'components': 'elastic' is none of full",
+        ),
+        (
+            "",
+            "anna,~nosuchuser/x.csv",
+            "In the column 'destination_landmarks': there is no user '~nosuchuser'.",
+        ),
+        (",destination_mesh", "anna,a.csv,~nosuchuser/x.stl", "no user '~nosuchuser'"),
+    ],
+)
+def test_a_row_that_cannot_be_used_names_its_column_and_the_others_go_on(
+    tmp_path, header, row, words
+):
+    found = read(tmp_path, f"{HEADER}{header}\n{row}\nben,b.csv\n").subjects
+    assert [(one.name, one.line) for one in found] == [("anna", 2), ("ben", 3)]
+    assert words in found[0].problem
+    assert found[1].problem == ""
+
+
+@pytest.mark.parametrize(
+    ("one", "other"), [("t\u00e9te", "te\u0301te"), ("anna", "anna\u200b"), ("a b", "a\u00a0b")]
+)
+def test_two_names_that_look_the_same_are_refused(tmp_path, one, other):
+    error = problem(tmp_path, f"{HEADER}\n{one},a.csv\n{other},b.csv\n")
+    assert "was used in line 2 in letters that look the same" in error.reason
+
+
+def test_a_name_is_taken_also_where_its_row_cannot_be_used(tmp_path):
+    assert "was used in line 2" in problem(tmp_path, f"{HEADER}\nanna\nanna,a.csv\n").reason
 
 
 def test_a_manifest_without_subjects_says_so(tmp_path):

@@ -100,3 +100,18 @@ def test_what_progress_raises_ends_the_search(tmp_path: Path) -> None:
 
     with pytest.raises(InterruptedError):
         find_mesh(LOST, [tmp_path], progress=stop)
+
+
+def test_a_link_that_leads_round_in_a_circle_is_passed_over(tmp_path: Path) -> None:
+    (tmp_path / "a.stl").symlink_to("b.stl")
+    (tmp_path / "b.stl").symlink_to("a.stl")
+    (tmp_path / "itself").symlink_to("itself")
+    (tmp_path / "gone.stl").symlink_to("nowhere.stl")
+    (tmp_path / LOST.path.name).symlink_to(LOST.path.name)
+    assert find_mesh(LOST, [tmp_path]) is None
+
+
+def test_what_is_no_file_is_passed_over(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / LOST.path.name)
+    (tmp_path / "zero.stl").symlink_to("/dev/zero")
+    assert find_mesh(LOST, [tmp_path]) is None

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pinwarp.core.components import Components
 from pinwarp.core.errors import (
     FileFormatError,
     LandmarkError,
@@ -19,6 +20,8 @@ from pinwarp.core.errors import (
     PinwarpError,
 )
 from pinwarp.core.landmarks import Landmark, Role
+from pinwarp.core.settings import WarpSettings
+from pinwarp.core.spline import PenaltyConvention
 from pinwarp.io.session_file import MeshReference, SessionRecord, read_session, write_session
 
 from . import strategies
@@ -63,10 +66,8 @@ def example(folder: Path) -> SessionRecord:
         destination_mesh=MeshReference(
             folder.parent / "shared" / "left subject.stl", "cd34", 89666
         ),
-        warping_penalty=0.0042,
-        penalty_convention="opynsim",
+        settings=WarpSettings(0.0042, PenaltyConvention.OPYNSIM, planar=True),
         unit="m",
-        planar=True,
         unknown=(("camera", "1, 2; 3"), ("", "a remark")),
     )
 
@@ -113,7 +114,9 @@ def test_an_empty_session_comes_back(tmp_path: Path) -> None:
 @given(
     landmarks=strategies.landmark_lists(strategies.names),
     penalty=st.floats(min_value=0, allow_nan=False) | st.sampled_from([0.0, 5e-324, math.inf]),
-    convention=st.sampled_from(["regularising", "opynsim"]),
+    convention=st.sampled_from(PenaltyConvention),
+    components=st.sampled_from(Components),
+    blend=st.floats(0, 1),
     unit=st.sampled_from(["mm", "m", ""]),
     planar=st.booleans(),
 )
@@ -121,17 +124,17 @@ def test_any_session_comes_back_exactly(
     tmp_path_factory: pytest.TempPathFactory,
     landmarks: list[Landmark],
     penalty: float,
-    convention: str,
+    convention: PenaltyConvention,
+    components: Components,
+    blend: float,
     unit: str,
     planar: bool,
 ) -> None:
     path = tmp_path_factory.getbasetemp() / "a.pinwarp.csv"
     record = SessionRecord(
         tuple(landmarks),
-        warping_penalty=penalty,
-        penalty_convention=convention,
+        settings=WarpSettings(penalty, convention, components, blend, planar),
         unit=unit,
-        planar=planar,
     )
     write_session(path, record)
     assert repr(read_session(path)) == repr(record)
@@ -393,7 +396,7 @@ def test_a_note_that_could_not_be_read_back_is_not_written(tmp_path: Path) -> No
 @pytest.mark.parametrize("penalty", [-1.0, math.nan])
 def test_a_penalty_that_is_none_is_not_written(tmp_path: Path, penalty: float) -> None:
     with pytest.raises(PenaltyError):
-        write_session(tmp_path / "a.csv", SessionRecord(warping_penalty=penalty))
+        write_session(tmp_path / "a.csv", SessionRecord(settings=WarpSettings(penalty)))
     assert list(tmp_path.iterdir()) == []
 
 

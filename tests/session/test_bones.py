@@ -10,6 +10,7 @@ import pytest
 from pinwarp.core.errors import FileFormatError, LandmarkError
 from pinwarp.core.landmarks import Landmark, Role, Side
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.settings import WarpSettings
 from pinwarp.io.meshes import MeshFile
 from pinwarp.io.session_file import read_session, write_session
 from pinwarp.session import edits
@@ -27,7 +28,7 @@ def session() -> Session:
         Landmark("b", (2, 0, 0), None),
         Landmark("p", (5, 1, 0), None, role=Role.PASSENGER),
     )
-    return Session(bone("source.ply"), bone("destination.ply"), landmarks, warping_penalty=2.0)
+    return Session(bone("source.ply"), bone("destination.ply"), landmarks, WarpSettings(2.0))
 
 
 def test_swapping_twice_is_nothing_and_once_keeps_positions_on_their_bones():

@@ -17,6 +17,7 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, 
 from pinwarp.core.errors import LandmarkError, PinwarpError
 from pinwarp.core.landmarks import Landmark, LandmarkState, Role, Side
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import PenaltyConvention
 from pinwarp.io.clipboard_table import clipboard_text, read_clipboard
 from pinwarp.io.meshes import MeshFile
@@ -213,7 +214,7 @@ def test_a_preview_leaves_no_step_and_a_cancelled_one_no_trace():
     before = editor.session
     for penalty in (1.0, 2.0, 3.0):
         editor.preview(edits.set_penalty(editor.committed, penalty))
-    assert editor.session.warping_penalty == 3.0
+    assert editor.session.settings.penalty == 3.0
     assert editor.undo_label is None
     editor.cancel_preview()
     assert editor.session == before
@@ -225,7 +226,7 @@ def test_a_drag_of_many_previews_is_one_step():
         editor.preview(edits.set_penalty(editor.committed, penalty))
     editor.commit(editor.session, "Change penalty")
     editor.undo()
-    assert editor.session.warping_penalty == 0.0
+    assert editor.session.settings.penalty == 0.0
     assert editor.undo_label is None
 
 
@@ -250,6 +251,17 @@ def test_commits_with_one_merge_key_become_one_step():
         editor.commit(edits.set_penalty(editor.session, penalty), "Change penalty", "penalty")
     editor.undo()
     assert editor.session == Session()
+
+
+def test_a_commit_after_an_undo_is_a_step_of_its_own_even_with_the_same_merge_key():
+    editor = Editor()
+    editor.commit(edits.set_penalty(editor.session, 1.0), "Change penalty", "penalty")
+    editor.commit(edits.set_unit(editor.session, "m"), "Change unit")
+    editor.undo()
+    editor.commit(edits.set_penalty(editor.session, 2.0), "Change penalty", "penalty")
+    assert editor.redo_label is None
+    editor.undo()
+    assert editor.session == edits.set_penalty(Session(), 1.0)
 
 
 def test_a_landmark_that_is_gone_is_no_longer_selected():
@@ -293,6 +305,20 @@ def test_nothing_is_computed_twice():
     assert solver.factorisations == 1
     solver.solve(WarpInputs.of(edits.move(renamed, "p1", SOURCE, (0, 0, 0))))
     assert solver.factorisations == 2
+
+
+def test_a_residual_that_is_only_rounding_is_none():
+    rng = np.random.default_rng(0)
+    places = 100 + 50 * rng.normal(size=(20, 2, 3))
+    pairs = tuple(Landmark(f"p{i}", tuple(a), tuple(b)) for i, (a, b) in enumerate(places))
+    result = WarpSolver().solve(WarpInputs.of(Session(landmarks=pairs)))
+    missed = np.linalg.norm(result.landmarks - places[:, 1], axis=1)
+    assert 0 < missed.max() < 1e-9
+    assert not result.residuals.any()
+    stiff = WarpSolver().solve(
+        WarpInputs.of(Session(landmarks=pairs, settings=WarpSettings(penalty=1e-3)))
+    )
+    assert stiff.residuals.all()
 
 
 def test_a_session_without_pairs_has_no_warp_and_says_what_to_do():

@@ -47,7 +47,7 @@ def sample() -> Session:
 
 def test_distances_are_those_of_the_exported_vertices(sample):
     warped = warped_mesh(sample)
-    data = warped_mesh_data(sample, warped)
+    data = warped_mesh_data(sample)
     expected = SurfaceIndex(sample.mesh(Side.DESTINATION)).distances(warped.vertices)
     assert np.array_equal(data.scalars["distance_mm"], expected)
     assert 0.05 < expected.max() < 4
@@ -55,16 +55,16 @@ def test_distances_are_those_of_the_exported_vertices(sample):
 
 def test_without_pose_distances_are_measured_where_the_destination_is(sample):
     """The exported vertices stay in the source's frame, far from the destination's surface."""
-    whole = warped_mesh_data(sample, warped_mesh(sample)).scalars
+    whole = warped_mesh_data(sample).scalars
     session = edits.set_components(sample, Components.WITHOUT_POSE)
-    data = warped_mesh_data(session, warped_mesh(session)).scalars
+    data = warped_mesh_data(session).scalars
     assert np.array_equal(data["distance_mm"], whole["distance_mm"])
     for name in ("det_j", "largest_stretch", "smallest_stretch", "deviation_mm"):
         assert np.allclose(data[name], whole[name], rtol=1e-9)
 
 
 def test_stretches_enclose_the_cube_root_of_the_volume(sample):
-    data = warped_mesh_data(sample, warped_mesh(sample)).scalars
+    data = warped_mesh_data(sample).scalars
     mean = np.cbrt(data["det_j"])
     assert (data["smallest_stretch"] <= mean + 1e-12).all()
     assert (mean <= data["largest_stretch"] + 1e-12).all()
@@ -72,7 +72,7 @@ def test_stretches_enclose_the_cube_root_of_the_volume(sample):
 
 def test_the_similarity_stretches_alike_everywhere(sample):
     session = edits.set_components(sample, Components.SIMILARITY)
-    data = warped_mesh_data(session, warped_mesh(session)).scalars
+    data = warped_mesh_data(session).scalars
     scale = fit_similarity(
         positions(sample.pairs, Side.SOURCE), positions(sample.pairs, Side.DESTINATION)
     ).scale
@@ -87,7 +87,7 @@ def test_deviations_belong_to_what_is_applied(sample):
     places = sample.mesh(Side.SOURCE).vertices
 
     def deviations(session: Session) -> np.ndarray | None:
-        return warped_mesh_data(session, warped_mesh(session)).scalars.get("deviation_mm")
+        return warped_mesh_data(session).scalars.get("deviation_mm")
 
     for session, penalty in (
         (edits.set_penalty(sample, 2.0), 2.0),
@@ -104,7 +104,7 @@ def test_deviations_belong_to_what_is_applied(sample):
 
 def test_few_pairs_and_no_destination_give_fewer_figures(sample):
     few = replace(sample, landmarks=sample.pairs[:4], destination=None)
-    data = warped_mesh_data(few, warped_mesh(few))
+    data = warped_mesh_data(few)
     assert set(data.scalars) == {"det_j", "largest_stretch", "smallest_stretch"}
     assert data.normals.shape == few.mesh(Side.SOURCE).vertices.shape
 
@@ -120,12 +120,12 @@ def test_few_pairs_and_no_destination_give_fewer_figures(sample):
 )
 def test_every_unit_makes_a_name_that_can_be_written(sample, unit, name):
     session = replace(sample, unit=unit)
-    assert name in warped_mesh_data(session, warped_mesh(session)).scalars
+    assert name in warped_mesh_data(session).scalars
 
 
 def test_an_export_can_be_cancelled_at_every_stage(sample):
     stages: list[str] = []
-    warped_mesh_data(sample, warped_mesh(sample), progress=lambda _s, stage: stages.append(stage))
+    warped_mesh_data(sample, progress=lambda _s, stage: stages.append(stage))
     assert len(set(stages)) == 4
     for wanted in set(stages):
 
@@ -134,7 +134,7 @@ def test_an_export_can_be_cancelled_at_every_stage(sample):
                 raise KeyboardInterrupt
 
         with pytest.raises(KeyboardInterrupt):
-            warped_mesh_data(sample, warped_mesh(sample), progress=cancel)
+            warped_mesh_data(sample, progress=cancel)
 
 
 # Landmarks and coefficients
@@ -166,7 +166,8 @@ def test_the_coefficients_are_those_of_the_exported_mesh(sample, components):
     coefficients = session_coefficients(session)
     evaluated = coefficients.spline.evaluate(session.mesh(Side.SOURCE).vertices)
     assert np.array_equal(evaluated, warped_mesh(session).vertices)
-    assert (coefficients.components, coefficients.blend) == (components.value, 0.75)
+    assert coefficients.settings == session.settings
+    assert (session.settings.components, session.settings.blend) == (components, 0.75)
     assert coefficients.source_sha256 == session.source.sha256
     assert coefficients.version == pinwarp.__version__
 

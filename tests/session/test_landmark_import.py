@@ -253,3 +253,11 @@ def test_free_names_are_free_and_different(names, taken):
 def test_many_taken_names_are_counted_past_quickly():
     names = [f"landmark_{i}" for i in range(20_000)]
     assert free_names(names, names) == [f"landmark_{i}" for i in range(20_000, 40_000)]
+
+
+def test_a_name_that_only_looks_like_one_of_the_session_is_told_and_asked_about():
+    session = Session(landmarks=(Landmark("fovea", (1, 2, 3), (4, 5, 6)),))
+    arriving = file([Landmark("fovea\u200b", None, (7, 8, 9))])
+    assert words(session, arriving, Pairing.BY_NAME) == ["new, though it looks like fovea"]
+    assert not is_plain(session, arriving)
+    assert is_plain(session, file([Landmark("head", None, (7, 8, 9))]))

@@ -12,6 +12,7 @@ import pytest
 from pinwarp.core.errors import FileFormatError, LandmarkError
 from pinwarp.core.landmarks import Landmark, Role, Side
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.settings import WarpSettings
 from pinwarp.io.meshes import MeshFile
 from pinwarp.io.session_file import read_session, write_session
 from pinwarp.session import edits
@@ -39,7 +40,7 @@ def session_of(source, destination, unit="m", penalty=0.0):
         file_of(destination),
         tuple(landmarks),
         unit=unit,
-        warping_penalty=penalty,
+        settings=WarpSettings(penalty),
     )
 
 
@@ -82,7 +83,8 @@ def test_scaling_a_side_takes_along_what_lies_on_it_and_keeps_the_warp(side):
 
 
 def test_an_infinite_penalty_stays_infinite():
-    assert scale_side(session_of(1, 1, penalty=math.inf), SOURCE, 10).warping_penalty == math.inf
+    after = scale_side(session_of(1, 1, penalty=math.inf), SOURCE, 10)
+    assert after.settings.penalty == math.inf
 
 
 def test_scaling_there_and_back_leaves_no_factor(tmp_path):

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from pinwarp.core.components import Components
 from pinwarp.core.factor import factorise
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import PenaltyConvention, solve
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session import edits
@@ -26,7 +29,8 @@ def session():
     )
     vertices = rng.normal(size=(400, 3))
     mesh = Mesh(vertices, np.arange(399).reshape(-1, 3))
-    return Session(MeshFile(Path("/m.ply"), mesh, "", ()), landmarks=landmarks, warping_penalty=0.2)
+    file = MeshFile(Path("/m.ply"), mesh, "", ())
+    return Session(file, landmarks=landmarks, settings=WarpSettings(0.2))
 
 
 def exact(session):
@@ -34,8 +38,8 @@ def exact(session):
     spline = solve(
         factorise([pair.source for pair in pairs]),
         [pair.destination for pair in pairs],
-        session.warping_penalty,
-        session.convention,
+        session.settings.penalty,
+        session.settings.convention,
     )
     return spline.evaluate(session.mesh(Side.SOURCE).vertices)
 
@@ -71,6 +75,25 @@ def test_a_preview_of_moving_shows_the_warp_as_it_will_be_at_rest(session, motio
     )
     at_rest = solver.solve(WarpInputs.of(after))
     assert np.abs(at_rest.vertices - preview.vertices).max() < 1e-4
+
+
+IN_PART = {
+    "the components": {"components": Components.AFFINE},
+    "the blend": {"blend": 0.5},
+    "both": {"components": Components.WITHOUT_POSE, "blend": 0.3},
+}
+
+
+@pytest.mark.parametrize("motion", ["the penalty", "a destination"])
+@pytest.mark.parametrize("part", IN_PART)
+@pytest.mark.parametrize("began_whole", [False, True])
+def test_a_preview_of_a_warp_in_part_shows_that_part(session, motion, part, began_whole):
+    part_of = replace(session, settings=replace(session.settings, **IN_PART[part]))
+    solver = WarpSolver()
+    solver.solve(WarpInputs.of(session if began_whole else part_of))
+    after = WarpInputs.of(MOTIONS[motion](part_of))
+    preview = solver.preview(after)
+    assert np.abs(preview.vertices - WarpSolver().solve(after).vertices).max() < 1e-4
 
 
 def test_sliding_evaluates_nothing_anew(session):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +13,9 @@ from pinwarp.core.components import Components
 from pinwarp.core.factor import factorise
 from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import Landmark, as_position
+from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import PenaltyConvention, solve
+from pinwarp.session import edits
 from pinwarp.session.judging.quality import quality_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.solver import WarpInputs, WarpSolver
@@ -119,9 +120,11 @@ def test_no_pairs_no_quality():
 
 def test_the_published_convention_has_no_leave_one_out_error_above_penalty_0():
     source, destination = made_up(14)
-    session = session_of(source, destination, convention=PenaltyConvention.OPYNSIM)
+    session = session_of(
+        source, destination, settings=WarpSettings(convention=PenaltyConvention.OPYNSIM)
+    )
     assert quality(session).left_out is not None
-    assert quality(replace(session, warping_penalty=0.1)).left_out is None
+    assert quality(edits.set_penalty(session, 0.1)).left_out is None
 
 
 def test_the_affine_part_and_the_energy_are_those_of_the_warp():
@@ -135,7 +138,8 @@ def test_the_affine_part_and_the_energy_are_those_of_the_warp():
 def test_each_part_of_the_warp_leaves_what_its_own_fit_leaves():
     source, destination = made_up(14)
     penalty = 5.0
-    left = quality(session_of(source, destination, warping_penalty=penalty)).rms_by_components
+    session = session_of(source, destination, settings=WarpSettings(penalty))
+    left = quality(session).rms_by_components
     factor = factorise(source)
     for part, mapped in (
         (Components.FULL, solve(factor, destination, penalty).evaluate(source)),

@@ -6,24 +6,18 @@ from datetime import datetime
 
 import numpy as np
 
-from pinwarp.core.landmarks import Side
-from pinwarp.core.maps import MapKind
 from pinwarp.io.samples import sample_session
 from pinwarp.session import edits
-from pinwarp.session.judging.quality import quality_of
 from pinwarp.session.judging.report import report_of
-from pinwarp.session.judging.survey import Surveyor
 from pinwarp.session.keeping.files import read_session
+from pinwarp.session.warp.solved import solved
 from pinwarp.session.warp.solver import WarpInputs, WarpSolver
 
 MADE = datetime(2026, 11, 22, 14, 3)
 
 
 def reported(session):
-    result = WarpSolver().solve(WarpInputs.of(session))
-    destination = session.mesh(Side.DESTINATION)
-    survey = Surveyor().survey(result, destination, MapKind.DISTANCE)
-    return report_of("femur", session, result, quality_of(result), survey, MADE)
+    return report_of("femur", solved(session), MADE)
 
 
 def values(report, quantity):

@@ -1,4 +1,4 @@
-"""Processes and clusters that do not lose a task, whatever dies."""
+"""Processes that do not lose a task, whatever dies."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from pinwarp.core.errors import PinwarpError
-from pinwarp.session.study.workers import on_cluster, on_this_machine
+from pinwarp.session.study.workers import on_this_machine
 
 
 def squared_unless_deadly(task):
@@ -68,16 +68,3 @@ def test_what_was_begun_is_finished_when_no_more_is_wanted(jobs):
         stop.set()
     assert sorted(done) == list(range(len(done)))
     assert 1 <= len(done) <= 2 * jobs
-
-
-def test_a_scheduler_that_does_not_answer_is_named(monkeypatch):
-    pytest.importorskip("distributed")
-    monkeypatch.setattr("pinwarp.session.study.workers.ANSWERS_WITHIN", "1s")
-    with pytest.raises(PinwarpError, match=r"No Dask scheduler answers at tcp://127.0.0.1:9"):
-        list(on_cluster(abs, [1], scheduler="tcp://127.0.0.1:9"))
-
-
-def test_without_the_package_for_clusters_it_says_what_to_install(monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "distributed", None)
-    with pytest.raises(PinwarpError, match=r"pip install 'pinwarp\[cluster\]'"):
-        list(on_cluster(abs, [1], scheduler="tcp://127.0.0.1:9"))

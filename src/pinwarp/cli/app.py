@@ -12,7 +12,7 @@ from pinwarp.cli.check import check
 from pinwarp.cli.convert import convert
 from pinwarp.cli.open import OpenWindow, make_open
 from pinwarp.cli.options import Version
-from pinwarp.cli.telling import BAD_USAGE, tell_error
+from pinwarp.cli.telling import BAD_USAGE, INTERRUPTED, tell_error
 from pinwarp.cli.warp import warp
 from pinwarp.core.errors import PinwarpError, words_of
 
@@ -35,6 +35,9 @@ class Commands(TyperGroup):
         except (PinwarpError, OSError) as error:
             tell_error(words_of(error))
             raise typer.Exit(BAD_USAGE) from None
+        except KeyboardInterrupt:
+            tell_error("Interrupted.")
+            raise typer.Exit(INTERRUPTED) from None
 
 
 def make_app(open_window: OpenWindow) -> typer.Typer:

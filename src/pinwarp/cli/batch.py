@@ -24,10 +24,13 @@ from pinwarp.session.importing.conversion import frame_notes
 from pinwarp.session.keeping.files import read_session
 from pinwarp.session.session import Session
 from pinwarp.session.study import batch as batches
+from pinwarp.session.study.cluster import runner_of
+from pinwarp.session.study.scheduler import address_of
 from pinwarp.session.study.subject import Task
-from pinwarp.session.study.workers import cores, runner_of
+from pinwarp.session.study.workers import cores
 
 FAILED = 1
+CLUSTER_LOST = 3
 
 
 def batch(
@@ -99,8 +102,12 @@ def batch(
 
     A second run does only what failed, is missing or has changed.
 
-    Where a subject fails the others are done all the same, and the exit code is 1.
+    Where a subject fails the others are done all the same. The exit code is 0 when all are done, 1
+    when one failed, 2 when nothing could begin, 3 when the cluster's scheduler was lost, and 130
+    after Ctrl+C; after the last two the same command goes on from there.
     """
+    if scheduler is not None:
+        scheduler = address_of(scheduler)
     subjects = read_manifest(manifest)
     shared = _source(source, source_landmarks, passengers, session)
     shared = with_options(shared, penalty, components, blend)
@@ -125,7 +132,7 @@ def batch(
         tally = batches.run(
             tasks,
             out.absolute(),
-            runner_of(jobs or cores(), scheduler, stop),
+            runner_of(jobs or cores(), scheduler, stop, lambda words: tell_notes([words])),
             force=force,
             told=told,
         )
@@ -134,8 +141,9 @@ def batch(
         f"of {tally.total}: see {out / batches.SUMMARY}"
     )
     if tally.is_interrupted:
-        tell_error("Stopped. What was done stays: the same command goes on from there.")
-        raise typer.Exit(INTERRUPTED)
+        why = tally.ended or "Stopped."
+        tell_error(f"{why} What was done stays: the same command goes on from there.")
+        raise typer.Exit(CLUSTER_LOST if tally.ended else INTERRUPTED)
     if tally.failed:
         raise typer.Exit(FAILED)
 

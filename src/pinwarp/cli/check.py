@@ -12,10 +12,12 @@ from rich.markup import escape
 from rich.table import Table
 
 from pinwarp.cli.options import SessionFile
+from pinwarp.core.findings import Severity
+from pinwarp.io.setting_keys import plain_settings
 from pinwarp.session.judging import check as checking
 from pinwarp.session.keeping.files import read_session
-from pinwarp.session.outputs.exports import applied_in_words
 from pinwarp.session.session import Session
+from pinwarp.session.warp.setting_words import settings_in_words
 from pinwarp.version import __version__
 
 FLAGGED = 1
@@ -39,7 +41,7 @@ def check(
     if as_json:
         about = _about(opened)
         # The affine fit's penalty is no number to JSON; session files say "inf", too.
-        if math.isinf(opened.warping_penalty):
+        if math.isinf(opened.settings.penalty):
             about["warping_penalty"] = "inf"
         words = about | checked.as_json()
         typer.echo(json.dumps(words, indent=2, ensure_ascii=False, allow_nan=False))
@@ -53,10 +55,7 @@ def _about(session: Session) -> dict[str, Any]:
     return {
         "pinwarp": __version__,
         "unit": session.unit,
-        "warping_penalty": session.warping_penalty,
-        "penalty_convention": session.convention.value,
-        "components": session.components.value,
-        "blend": session.blend,
+        **plain_settings(session.settings),
     }
 
 
@@ -65,7 +64,7 @@ def _print(console: Console, name: str, session: Session, checked: checking.Chec
     pairs = Table("Pair", title=f"{name}: {len(checked.pairs)} pairs, lengths in {unit}")
     for column in ("Residual", "Left out", "Standardised"):
         pairs.add_column(column, justify="right")
-    named = {name for x in checked.findings if checking.is_flagged(x.finding) for name in x.names}
+    named = {name for x in checked.findings if x.severity is Severity.WRONG for name in x.names}
     lengths = [x for pair in checked.pairs for x in (pair.residual, pair.leave_one_out)]
     decimals = _decimals(max((x for x in lengths if not math.isnan(x)), default=0.0))
     for pair in checked.pairs:
@@ -81,7 +80,7 @@ def _print(console: Console, name: str, session: Session, checked: checking.Chec
     for label, words in _figures(session, checked):
         console.print(f"{label:<22}{words}", markup=False, highlight=False)
     for found in checked.findings:
-        mark = "!" if checking.is_flagged(found.finding) else "-"
+        mark = "!" if found.severity is Severity.WRONG else "-"
         console.print(f"{mark} {found.sentence}", markup=False, highlight=False)
     for note in checked.notes:
         console.print(f"- {note}", markup=False, highlight=False)
@@ -90,8 +89,7 @@ def _print(console: Console, name: str, session: Session, checked: checking.Chec
 def _figures(session: Session, checked: checking.Check) -> list[tuple[str, str]]:
     unit = session.unit
     figures = [
-        ("Applied", applied_in_words(session)),
-        ("Warping penalty", f"{session.warping_penalty:.6g} {unit} ({session.convention.value})"),
+        *settings_in_words(session.settings, unit),
         ("Suggested penalty", _length(checked.suggested_penalty, unit, "none")),
         (
             "Flexibility",

@@ -8,12 +8,12 @@ from typing import Annotated
 import typer
 
 from pinwarp.cli.options import Force
-from pinwarp.cli.telling import counted, tell_notes
-from pinwarp.core.errors import PinwarpError
+from pinwarp.cli.telling import refuse_existing, tell_notes
 from pinwarp.core.landmarks import Side
+from pinwarp.core.words import counted
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES, format_of
 from pinwarp.session.importing.conversion import convert_landmarks
-from pinwarp.session.study.batch import refuse_to_replace
+from pinwarp.session.outputs.replacing import refuse_to_replace
 
 
 def convert(
@@ -48,8 +48,7 @@ def convert(
 ) -> None:
     """Convert landmarks between programs: OpenSim Creator, 3D Slicer, MeshLab, BigWarp, ..."""
     refuse_to_replace([source], [output])
-    if output.exists() and not force:
-        raise PinwarpError(f"{output} is there already: use --force to replace it.")
+    refuse_existing([output], force)
     known = None if to is None else format_of(f"landmarks.{to.lower().removeprefix('.')}")
     done = convert_landmarks(source, output, side=side, known=known, unit=unit)
     tell_notes(done.notes, source.name)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from pinwarp.core.errors import PinwarpError, readable
 
 BAD_USAGE = 2
 INTERRUPTED = 130
@@ -14,13 +17,13 @@ INTERRUPTED = 130
 
 def tell_error(words: str) -> None:
     """Say on one line what went wrong."""
-    typer.echo(f"pinwarp: {' '.join(words.splitlines())}", err=True)
+    typer.echo(f"pinwarp: {readable(' '.join(words.splitlines()))}", err=True)
 
 
 def tell_notes(notes: Iterable[str], about: str = "") -> None:
     """Say what the user should know beside the result, a line each."""
     for note in notes:
-        typer.echo(f"{about}: {note}" if about else note, err=True)
+        typer.echo(readable(f"{about}: {note}" if about else note), err=True)
 
 
 def progress_bar() -> Progress:
@@ -37,12 +40,15 @@ def progress_bar() -> Progress:
     )
 
 
-def counted(count: int, thing: str) -> str:
-    """Return a number with its noun.
+def refuse_existing(outputs: Sequence[Path], force: bool) -> None:
+    """Raise where an output is there already and replacing it was not asked for.
 
-    Examples
-    --------
-    >>> counted(1, "pair"), counted(1200, "pair")
-    ('1 pair', '1,200 pairs')
+    Raises
+    ------
+    PinwarpError
+        With the first of them and the way out.
     """
-    return f"{count:,} {thing}{'' if count == 1 else 's'}"
+    there = [path for path in outputs if path.exists()]
+    if there and not force:
+        more = f" (and {len(there) - 1} more)" if len(there) > 1 else ""
+        raise PinwarpError(f"{there[0]}{more} is there already: use --force to replace it.")

@@ -8,12 +8,12 @@ from typing import Annotated
 import typer
 
 from pinwarp.cli.options import Applied, Blend, Force, Penalty, SessionFile, with_options
-from pinwarp.cli.telling import BAD_USAGE, progress_bar, tell_error, tell_notes
+from pinwarp.cli.telling import BAD_USAGE, progress_bar, refuse_existing, tell_error, tell_notes
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.session.keeping.files import read_session, with_meshes
-from pinwarp.session.outputs.exports import applied_in_words
 from pinwarp.session.outputs.warp_files import FileWarper, outputs_of, warp_each
+from pinwarp.session.warp.component_words import applied_in_words
 
 
 def warp(
@@ -49,7 +49,8 @@ def warp(
         raise PinwarpError(f"{session.name} has no source mesh: name the files to warp.")
     sources = inputs or ([] if opened.source is None else [opened.source.path])
     files = [file.path for file in (opened.source, opened.destination) if file is not None]
-    outputs = outputs_of(sources, out, kept=[session, *files], force=force)
+    outputs = outputs_of(sources, out, kept=[session, *files])
+    refuse_existing(outputs, force)
     if opened.source is not None and (axes := opened.source.mirrored):
         opened = with_meshes(opened, [Side.SOURCE], session.absolute().parent)
         tell_notes([f"The session mirrors its source ({axes}): so are the inputs."])
@@ -66,6 +67,7 @@ def warp(
                 failed += 1
                 continue
             tell_notes(file.notes, file.source.name)
-            typer.echo(f"{file.output}: {applied_in_words(opened)}, {len(opened.pairs)} pairs")
+            applied = applied_in_words(opened.settings)
+            typer.echo(f"{file.output}: {applied}, {len(opened.pairs)} pairs")
     if failed:
         raise typer.Exit(BAD_USAGE)

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
+from pinwarp.core.positions import quiet
+
 Matrix = NDArray[np.float64]
 
 
@@ -32,6 +34,7 @@ class Similarity:
         return np.asarray(moved + self.translation)
 
 
+@quiet
 def fit_similarity(
     source: ArrayLike, destination: ArrayLike, *, scaling: bool = True
 ) -> Similarity:
@@ -132,6 +135,7 @@ class AffineParts:
     mirrored: bool
 
 
+@quiet
 def decompose(affine: ArrayLike, centre: ArrayLike = (0.0, 0.0, 0.0)) -> AffineParts:
     """Take the affine part of a spline apart by polar decomposition.
 

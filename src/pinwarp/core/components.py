@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pinwarp.core.alignment import Similarity, fit_similarity
 from pinwarp.core.factor import SourceFactor
+from pinwarp.core.positions import quiet
 from pinwarp.core.spline import Spline, solve
 
 Matrix = NDArray[np.float64]
@@ -41,6 +42,7 @@ class Components(StrEnum):
     RIGID = "rigid"
 
 
+@quiet
 def applied(
     spline: Spline,
     factor: SourceFactor,

@@ -4,8 +4,12 @@
 
     PinwarpError
     ├── LandmarkError (ValueError)      coordinates, names or counts that cannot be used
+    │   ├── LandmarkTypeError (TypeError)       not a table of three numbers a row
+    │   └── LandmarkCountError (RuntimeError)   none, or a landmark without its counterpart
     ├── PenaltyError (ValueError)       a penalty that is negative or NaN
-    ├── SingularSystemError             the equations have no usable solution
+    │   └── PenaltyTypeError (TypeError)        not a number at all
+    ├── SingularSystemError (RuntimeError)      the equations have no usable solution
+    ├── RangeError (ArithmeticError)    a warp that no number can hold
     ├── MeshError (ValueError)          not a surface, or not a usable one
     └── FileFormatError (ValueError)    a file that cannot be read; names file and line
         └── NewerFileError              written by a newer pinwarp
@@ -19,10 +23,31 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
+
+LONGEST = 1_000
+"""More characters than anybody reads of one message."""
+
+
+def readable(text: str) -> str:
+    """Return a message, its middle cut out where it is too long to be read.
+
+    Examples
+    --------
+    >>> readable("femur.csv: It is empty.")
+    'femur.csv: It is empty.'
+    >>> len(readable("a" * 1_000_000))
+    1000
+    """
+    if len(text) <= LONGEST:
+        return text
+    # What is wrong stands at the beginning, what to do about it at the end.
+    end = LONGEST // 3
+    return f"{text[: LONGEST - end - 3]} … {text[-end:]}"
 
 
 class PinwarpError(Exception):
-    """Whatever pinwarp raises on purpose: its message is meant for the user.
+    """Whatever pinwarp raises on purpose: its message is meant for the user, and cut for one.
 
     Examples
     --------
@@ -34,17 +59,36 @@ class PinwarpError(Exception):
     The warping penalty is -1.0; it must be 0 or more.
     """
 
+    def __str__(self) -> str:
+        return readable(super().__str__())
+
 
 class LandmarkError(PinwarpError, ValueError):
     """Landmarks that cannot be used; the message names the row or the landmark."""
 
 
+class LandmarkTypeError(LandmarkError, TypeError):
+    """Landmarks that are no table of three real numbers a row."""
+
+
+class LandmarkCountError(LandmarkError, RuntimeError):
+    """No landmarks, or not as many on either side."""
+
+
 class PenaltyError(PinwarpError, ValueError):
-    """A warping penalty that is negative or not a number."""
+    """A warping penalty that is negative or not a number, or a convention that is none."""
 
 
-class SingularSystemError(PinwarpError):
+class PenaltyTypeError(PenaltyError, TypeError):
+    """A warping penalty that is no real number: text, a list, a truth value."""
+
+
+class SingularSystemError(PinwarpError, RuntimeError):
     """The spline's equations have no usable solution at this penalty."""
+
+
+class RangeError(PinwarpError, ArithmeticError):
+    """A warp that leaves the range of numbers; the message says where."""
 
 
 class MeshError(PinwarpError, ValueError):
@@ -66,10 +110,14 @@ class FileFormatError(PinwarpError, ValueError):
 
     def __init__(self, path: str | Path, reason: str, line: int | None = None) -> None:
         self.path = Path(path)
-        self.reason = reason
+        self.reason = readable(reason)
         self.line = line
         place = f"{self.path.name}, line {line}" if line is not None else self.path.name
-        super().__init__(f"{place}: {reason}")
+        super().__init__(f"{place}: {self.reason}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Its only argument would be the whole message, of which no other process can make it.
+        return type(self), (self.path, self.reason, self.line)
 
 
 class NewerFileError(FileFormatError):
@@ -85,8 +133,8 @@ def words_of(error: Exception) -> str:
     'bone.stl: Permission denied.'
     """
     if isinstance(error, OSError) and error.strerror:
-        return f"{error.filename or 'The file'}: {error.strerror}."
-    return str(error)
+        return readable(f"{error.filename or 'The file'}: {error.strerror}.")
+    return readable(str(error))
 
 
 class PinwarpWarning(UserWarning):

@@ -18,9 +18,9 @@ from scipy.linalg import solve_triangular
 from scipy.linalg.lapack import dgeqrf
 from scipy.spatial.distance import cdist
 
-from pinwarp.core.errors import LandmarkError
+from pinwarp.core.errors import LandmarkCountError
 from pinwarp.core.findings import Finding, FindingKind
-from pinwarp.core.kernel import LARGEST_COORDINATE
+from pinwarp.core.positions import as_positions
 
 Matrix = NDArray[np.float64]
 
@@ -28,37 +28,10 @@ Matrix = NDArray[np.float64]
 RANK_TOLERANCE = 1e-5
 # ... and below this one the landmarks are called nearly planar.
 PLANAR_TOLERANCE = 0.05
+# Nor has any direction where all are so small.
+TINIEST = 1e-290
 # Landmarks closer than this share of the median spacing are reported.
 CLOSE_TOLERANCE = 1e-4
-
-
-def as_positions(values: ArrayLike, what: str) -> Matrix:
-    """Return a fresh (n, 3) float64 array of finite positions.
-
-    Parameters
-    ----------
-    values
-        (n, 3) numbers of any kind.
-    what
-        What the rows are called in a message, such as ``"source landmark"``.
-
-    Raises
-    ------
-    LandmarkError
-        When the shape is another or a row cannot be used; the message names the row.
-    """
-    try:
-        array = np.array(values, dtype=np.float64, order="C")
-    except (TypeError, ValueError) as error:
-        raise LandmarkError(f"The {what}s are not a table of numbers: {error}") from error
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise LandmarkError(f"The {what}s have the shape {array.shape} instead of (n, 3).")
-    usable = (np.abs(array) <= LARGEST_COORDINATE).all(axis=1)
-    if not usable.all():
-        row = int(np.flatnonzero(~usable)[0])
-        x, y, z = array[row].tolist()
-        raise LandmarkError(f"The {what} in row {row} is not usable: ({x}, {y}, {z}).")
-    return array
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +48,8 @@ class SourceFactor:
         Orthonormal directions that the landmarks span; r = 3 in general position.
     findings
         What is noteworthy about them.
+    duplicates
+        The places where several landmarks lie: the rows of each, ascending.
     """
 
     source: Matrix
@@ -82,7 +57,7 @@ class SourceFactor:
     scale: float
     directions: Matrix
     findings: tuple[Finding, ...]
-    duplicates: tuple[tuple[int, int], ...]
+    duplicates: tuple[tuple[int, ...], ...]
     reflectors: Matrix
     triangle: Matrix
     upper: Matrix
@@ -107,6 +82,19 @@ class SourceFactor:
         """What each mode is at the landmarks: ``Q2 Z`` (n, modes), orthonormal columns."""
         _, vectors = self.modes
         return self.rotate_back(np.vstack([np.zeros((self.rank + 1, len(vectors))), vectors]))
+
+    @cached_property
+    def place_of(self) -> NDArray[np.intp]:
+        """The number of each landmark's place: those of duplicates are the same."""
+        first = np.arange(len(self.source))
+        for rows in self.duplicates:
+            first[list(rows)] = rows[0]
+        return np.asarray(np.unique(first, return_inverse=True)[1])
+
+    @cached_property
+    def places(self) -> SourceFactor:
+        """The same with each place once."""
+        return factorise(self.source[np.unique(self.place_of, return_index=True)[1]])
 
     def certainty(self, penalties: Matrix) -> tuple[Matrix, Matrix]:
         """Return ``(stiffest + s) / (lambda + s)`` of every mode for (k,) penalties.
@@ -229,7 +217,7 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
     """
     source = as_positions(source, "source landmark")
     if not len(source):
-        raise LandmarkError("There are no landmark pairs: place at least one.")
+        raise LandmarkCountError("There are no landmark pairs: place at least one.")
     count = len(source)
     centre = source.mean(axis=0)
     offsets = source - centre
@@ -238,7 +226,8 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
     scale = (
         extent * float(np.sqrt(np.mean(np.sum((offsets / extent) ** 2, axis=1)))) if extent else 0
     )
-    at_one_place = scale <= 1e-12 * float(np.abs(centre).max())
+    # What is next to nothing has no reciprocal: it is taken for nothing.
+    at_one_place = scale <= max(1e-12 * float(np.abs(centre).max()), TINIEST)
     if at_one_place:
         scale = 1.0
     unit = np.zeros_like(offsets) if at_one_place else offsets / scale
@@ -288,8 +277,8 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
 
 def _spacing(
     distances: Matrix, scale: float
-) -> tuple[tuple[Finding, ...], tuple[tuple[int, int], ...], bool]:
-    """Find landmarks at one place, and landmarks suspiciously close together."""
+) -> tuple[tuple[Finding, ...], tuple[tuple[int, ...], ...], bool]:
+    """Find places where several landmarks lie, and places suspiciously close together."""
     count = len(distances)
     if count < 2:
         return (), (), True
@@ -299,15 +288,32 @@ def _spacing(
     close = max(CLOSE_TOLERANCE * float(np.median(nearest)), same)
     if nearest.min() > close:
         return (), (), True
-    rows, others = np.nonzero(np.triu(distances <= close, 1))
-    pairs = [(int(i), int(j)) for i, j in zip(rows, others, strict=True)]
-    duplicates = tuple(pair for pair in pairs if distances[pair] <= same)
+    duplicates = _clusters(distances <= same)
+    # Of landmarks at one place the first speaks for all.
+    others = [row for place in duplicates for row in place[1:]]
+    near = np.asarray(distances <= close)
+    near[others] = near[:, others] = False
     findings = tuple(
-        Finding(FindingKind.CLOSE, pair, float(distances[pair] * scale))
-        for pair in pairs
-        if pair not in duplicates
+        Finding(FindingKind.CLOSE, rows, float(distances[np.ix_(rows, rows)].min() * scale))
+        for rows in _clusters(near)
     )
     return findings, duplicates, False
+
+
+def _clusters(near: NDArray[np.bool_]) -> tuple[tuple[int, ...], ...]:
+    """Return the rows that hang together in a symmetric (n, n) relation; none stands alone."""
+    found = []
+    left = np.asarray(near.any(axis=1))
+    while left.any():
+        rows = last = np.flatnonzero(left)[:1]
+        left[last] = False
+        # Every row is looked at once: a thousand at one place are no more work than in a chain.
+        while len(last):
+            last = np.flatnonzero(near[last].any(axis=0) & left)
+            left[last] = False
+            rows = np.concatenate([rows, last])
+        found.append(tuple(sorted(rows.tolist())))
+    return tuple(found)
 
 
 def affine_coordinates(factor: SourceFactor, points: Matrix) -> Matrix:

@@ -3,13 +3,38 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
+from enum import IntEnum, StrEnum
+from typing import Protocol, TypeVar
+
+from pinwarp.core.words import listed
+
+
+class Severity(IntEnum):
+    """How bad a finding is.
+
+    Something ``WRONG`` should be put right before the warp is used; a ``WARNING`` says that it may
+    be; a ``REMARK`` is only worth knowing.
+    """
+
+    REMARK = 0
+    WARNING = 1
+    WRONG = 2
+
+
+# Of more landmarks than this a sentence names the first, and says how many more there are.
+MOST_NAMED = 4
 
 
 class FindingKind(StrEnum):
-    """What was noticed."""
+    """What was noticed.
+
+    Examples
+    --------
+    >>> FindingKind.FOLD.severity.name, FindingKind.POLE.severity.name
+    ('WRONG', 'WARNING')
+    """
 
     CONFLICT = "conflict"
     CLOSE = "close"
@@ -21,6 +46,17 @@ class FindingKind(StrEnum):
     ISOLATED = "isolated"
     SWAPPED = "swapped"
     MIRRORED = "mirrored"
+
+    @property
+    def severity(self) -> Severity:
+        """How bad it is: what lists, marks, their order and strict checks go by."""
+        match self:
+            case FindingKind.ISOLATED:
+                return Severity.REMARK
+            case FindingKind.CLOSE | FindingKind.NEARLY_PLANAR | FindingKind.POLE:
+                return Severity.WARNING
+            case _:
+                return Severity.WRONG
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,12 +70,12 @@ class Finding:
     rows
         The pairs concerned, by their row in the solve.
     value
-        The figure that goes with it: for a conflict or close landmarks the distance on the
-        destination or source (mesh units), for nearly planar landmarks the ratio of the
-        smallest to the largest extent, for a pole its penalty (mesh units), for a fold the
-        number of its vertices. For inconsistent landmarks their distance on the source, for a
-        suspect its standardised leave-one-out error, for an isolated landmark the distance to
-        the nearest, for swapped or mirrored ones the share of the error that is left when that
+        The figure that goes with it: for a conflict the largest distance on the destination, for
+        close landmarks the smallest on the source (mesh units), for nearly planar landmarks the
+        ratio of the smallest to the largest extent, for a pole its penalty (mesh units), for a
+        fold the number of its vertices. For inconsistent landmarks their distance on the source,
+        for a suspect its standardised leave-one-out error, for an isolated landmark the distance
+        to the nearest, for swapped or mirrored ones the share of the error that is left when that
         is put right.
     others
         Further figures: for inconsistent landmarks their distance on the destination, for a
@@ -52,9 +88,14 @@ class Finding:
     others: tuple[float, ...] = ()
 
     @property
+    def severity(self) -> Severity:
+        """How bad it is."""
+        return self.kind.severity
+
+    @property
     def is_grave(self) -> bool:
-        """Whether something may be wrong: an isolated landmark is only far from the others."""
-        return self.kind is not FindingKind.ISOLATED
+        """Whether something is or may be wrong."""
+        return self.severity > Severity.REMARK
 
     def describe(self, names: Sequence[str] | None = None, unit: str = "") -> str:
         """Say it in a sentence.
@@ -71,17 +112,19 @@ class Finding:
         >>> Finding(FindingKind.CONFLICT, (0, 1), 2.5).describe(["apex", "tip"], "mm")
         'apex and tip lie at the same place on the source but 2.5 mm apart on the destination.'
         """
-        who = _listed([names[row] if names else f"landmark {row}" for row in self.rows])
+        who = _who([names[row] if names else f"landmark {row}" for row in self.rows])
         length = f"{self.value:.4g} {unit}".rstrip()
         other = f"{self.others[0]:.3g} {unit}".rstrip() if self.others else ""
         match self.kind:
             case FindingKind.CONFLICT:
+                apart = length if len(self.rows) == 2 else f"up to {length}"
                 return (
-                    f"{who} lie at the same place on the source but {length} apart "
+                    f"{who} lie at the same place on the source but {apart} apart "
                     "on the destination."
                 )
             case FindingKind.CLOSE:
-                return f"{who} are only {length} apart on the source: the warp bends hard there."
+                apart = length if len(self.rows) == 2 else f"{length} or little more"
+                return f"{who} are only {apart} apart on the source: the warp bends hard there."
             case FindingKind.NEARLY_PLANAR:
                 return (
                     "The source landmarks lie nearly in one plane: "
@@ -122,9 +165,31 @@ class Finding:
                 )
 
 
-def _listed(words: Sequence[str]) -> str:
-    """Say one or several."""
-    return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
+def _who(names: Sequence[str]) -> str:
+    """Say one or several; of many the first, and how many more."""
+    if len(names) > MOST_NAMED:
+        names = [*names[: MOST_NAMED - 1], f"{len(names) - MOST_NAMED + 1} more"]
+    return listed(names)
+
+
+class _Judged(Protocol):
+    @property
+    def severity(self) -> Severity: ...
+
+
+_Found = TypeVar("_Found", bound=_Judged)
+
+
+def gravest_first(found: Iterable[_Found]) -> tuple[_Found, ...]:
+    """Sort findings by their severity; those of one severity keep their order.
+
+    Examples
+    --------
+    >>> kinds = [FindingKind.ISOLATED, FindingKind.CLOSE, FindingKind.SUSPECT, FindingKind.FOLD]
+    >>> [one.kind.value for one in gravest_first(Finding(kind, (), 1.0) for kind in kinds)]
+    ['suspect', 'fold', 'close', 'isolated']
+    """
+    return tuple(sorted(found, key=lambda one: -one.severity))
 
 
 def _round_down(value: float) -> str:

@@ -11,11 +11,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pinwarp.core import kernel
+from pinwarp.core.errors import RangeError
+from pinwarp.core.positions import quiet
 from pinwarp.core.spline import Spline
 
 Matrix = NDArray[np.float64]
 
+# The third power of more, or of its reciprocal, is no number.
+LARGEST_STRETCH = 1e100
 
+
+@quiet
 def jacobians(spline: Spline, points: ArrayLike) -> Matrix:
     """Return the derivative of the warp.
 
@@ -32,6 +38,11 @@ def jacobians(spline: Spline, points: ArrayLike) -> Matrix:
         ``J[:, c, j]``: how fast coordinate c of the destination grows with coordinate j of the
         source (destination units per source unit).
 
+    Raises
+    ------
+    RangeError
+        When it makes lengths so much longer or shorter that its determinant is no number.
+
     Examples
     --------
     >>> from pinwarp.core.spline import factorise, solve
@@ -40,7 +51,15 @@ def jacobians(spline: Spline, points: ArrayLike) -> Matrix:
     >>> np.allclose(J, 2 * np.eye(3))
     True
     """
-    return kernel.evaluate_jacobian(spline.source, spline.weights, spline.affine, points)
+    points = kernel.as_points(points)
+    found = kernel.evaluate_jacobian(spline.source, spline.weights, spline.affine, points)
+    largest = float(np.abs(found).max(initial=0.0))
+    if not largest <= LARGEST_STRETCH or 0 < largest < 1 / LARGEST_STRETCH:
+        raise RangeError(
+            "The warp leaves the range of numbers: it makes lengths "
+            f"{largest:.3g} times as long. Check the units of both sides."
+        )
+    return found
 
 
 def determinants(jacobian: Matrix) -> Matrix:

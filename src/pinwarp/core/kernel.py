@@ -6,7 +6,6 @@ import contextlib
 import functools
 import logging
 import os
-import tempfile
 import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -19,7 +18,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.distance import cdist
 
 from pinwarp.core.blocks import BLOCK, LARGEST_FIELD
-from pinwarp.core.errors import LandmarkError
+from pinwarp.core.cache_folder import private_cache
+from pinwarp.core.positions import as_positions
 
 Matrix = NDArray[np.float64]
 Single = NDArray[np.float32]
@@ -28,8 +28,6 @@ Single = NDArray[np.float32]
 WORTH_COMPILING = 300_000
 # Distances held at once by the numpy path: 32 MB.
 CHUNK = 4_000_000
-# Squares of larger coordinates overflow.
-LARGEST_COORDINATE = 1e150
 # Below this many sums (about a millisecond) a second thread costs more to wake than it saves.
 WORTH_THREADS = 4_000_000
 
@@ -52,7 +50,7 @@ def compiled() -> ModuleType | None:
     """Return the compiled loops, or None where numba cannot compile."""
     if not _is_writable(Path(__file__).parent) and "NUMBA_CACHE_DIR" not in os.environ:
         # A package folder for reading only (a system-wide install): numba caches elsewhere.
-        os.environ["NUMBA_CACHE_DIR"] = str(Path(tempfile.gettempdir()) / f"pinwarp-{_user()}")
+        os.environ["NUMBA_CACHE_DIR"] = str(private_cache())
     try:
         from pinwarp.core import compiled as loops
 
@@ -66,10 +64,6 @@ def compiled() -> ModuleType | None:
 
 def _is_writable(folder: Path) -> bool:
     return os.access(folder, os.W_OK)
-
-
-def _user() -> int:
-    return os.getuid() if hasattr(os, "getuid") else 0
 
 
 def warm_up() -> None:
@@ -176,14 +170,7 @@ def evaluate_jacobian(
 
 def as_points(points: ArrayLike) -> Matrix:
     """Return the points as (m, 3) float64; LandmarkError where that cannot be."""
-    points = np.ascontiguousarray(points, dtype=np.float64)
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise LandmarkError(f"The points have the shape {points.shape} instead of (m, 3).")
-    usable = np.abs(points) <= LARGEST_COORDINATE
-    if not usable.all():
-        row = int(np.flatnonzero(~usable.all(axis=1))[0])
-        raise LandmarkError(f"The point in row {row} is not usable: {points[row].tolist()}.")
-    return points
+    return as_positions(points, "point", fresh=False)
 
 
 def about(affine: Matrix, centre: Matrix) -> Matrix:

@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pinwarp.core import kernel
+from pinwarp.core.errors import RangeError
 from pinwarp.core.factor import SourceFactor
+from pinwarp.core.positions import quiet
 from pinwarp.core.spline import (
     Spline,
     back_to_landmarks,
@@ -23,6 +25,11 @@ from pinwarp.core.spline import (
 Matrix = NDArray[np.float64]
 Single = NDArray[np.float32]
 
+# What single precision can hold, with some room for what a view makes of it ...
+LARGEST_SINGLE = 1e37
+SMALLEST_SINGLE = 1e-30
+# ... and how far numbers may be from 1 that are squared in it.
+AT_EASE = 1e17
 # Modes are left out of a sweep below this share of the bounding box of the landmarks.
 SWEEP_TOLERANCE = 1e-5
 SWEEP_SAMPLES = 120
@@ -37,29 +44,68 @@ class PreviewPoints:
     centre : (3,) float64
     local : (m, 3) float32
         The vertices about the centre.
+    reach : float
+        Their largest coordinate.
     """
 
     centre: Matrix
     local: Single
+    reach: float
 
     @classmethod
     def of(cls, vertices: ArrayLike) -> PreviewPoints:
-        """Centre the vertices and round them."""
+        """Centre the vertices and round them; RangeError where that leaves nothing to draw."""
         array = np.asarray(vertices, dtype=np.float64)
-        centre = 0.5 * (array.min(axis=0) + array.max(axis=0))
+        centre = 0.5 * array.min(axis=0) + 0.5 * array.max(axis=0)
+        reach = check_drawable(array - centre)
         local = np.empty(array.shape, np.float32)
         np.subtract(array, centre, out=local, casting="same_kind")
-        return cls(centre, local)
+        return cls(centre, local, reach)
 
 
+def check_drawable(vertices: Matrix) -> float:
+    """Return the largest coordinate; RangeError where single precision, which is drawn, has none.
+
+    Examples
+    --------
+    >>> check_drawable(np.array([[0.0, -3.0, 2.0]]))
+    3.0
+    """
+    reach = float(max(-vertices.min(), vertices.max()))
+    if reach > LARGEST_SINGLE or 0 < reach < SMALLEST_SINGLE:
+        raise RangeError(f"A mesh of the size {reach:.3g} cannot be drawn: check its unit.")
+    return reach
+
+
+@quiet
+def suits_single(spline: Spline, points: PreviewPoints) -> bool:
+    """Whether single precision holds the squares of distances, and what the warp makes of them."""
+    affine = kernel.about(spline.affine, points.centre)
+    apart = points.reach + float(np.abs(spline.source - points.centre).max(initial=0.0))
+    bent = float(np.abs(spline.weights).sum()) * 2 * apart
+    warped = float(np.abs(affine[0]).max() + 3 * np.abs(affine[1:]).max() * points.reach) + bent
+    return all(x == 0 or 1 / AT_EASE <= x <= AT_EASE for x in (apart, warped))
+
+
+@quiet
 def preview(spline: Spline, points: PreviewPoints) -> Single:
-    """Return the warped points, evaluated directly."""
-    return kernel.evaluate_preview(
-        spline.source - points.centre,
-        spline.weights,
-        kernel.about(spline.affine, points.centre),
-        points.local,
-    )
+    """Return the warped points, evaluated directly; RangeError where they cannot be drawn."""
+    source, affine = spline.source - points.centre, kernel.about(spline.affine, points.centre)
+    if suits_single(spline, points):
+        return kernel.evaluate_preview(source, spline.weights, affine, points.local)
+    local = points.local.astype(np.float64)
+    return drawable(kernel.evaluate(source, spline.weights, affine, local))
+
+
+def drawable(warped: Matrix) -> Single:
+    """Return warped (m, 3) points in single precision; RangeError where it cannot hold them."""
+    largest = float(np.abs(warped).max(initial=0.0))
+    if not largest <= LARGEST_SINGLE or 0 < largest < SMALLEST_SINGLE:
+        raise RangeError(
+            f"The warp leaves the range of numbers that can be drawn: at {largest:.3g}. "
+            "Check the unit, and the landmarks for one that is far from all others."
+        )
+    return np.asarray(warped, dtype=np.float32)
 
 
 class PenaltySweep:

@@ -9,9 +9,11 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pinwarp.core.errors import RangeError
 from pinwarp.core.factor import SourceFactor
 from pinwarp.core.jacobian import stretches
 from pinwarp.core.landmarks import Position, as_position
+from pinwarp.core.live import LARGEST_SINGLE
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.prediction import Prediction
 from pinwarp.core.spline import Spline, solve
@@ -31,6 +33,8 @@ MOST_DOUBLINGS = 2.0
 # What is turned inside out has no logarithm: it lies below all that has one.
 FOLDED_LEVEL = -10.0
 BINS = 48
+# A range of less is none.
+TINIEST = 1e-290
 
 
 class MapKind(StrEnum):
@@ -47,19 +51,25 @@ class MapKind(StrEnum):
         """Whether it is without a unit, neutral at 1, and read in doublings and halvings."""
         return self not in (MapKind.DISTANCE, MapKind.UNCERTAINTY)
 
-    def levels(self, values: ArrayLike) -> NDArray[np.float32]:
+    def levels(self, values: ArrayLike) -> NDArray[np.floating]:
         """Return values on the scale they are shown on: ratios as doublings, others as they are.
+
+        In the precision of the values.
 
         Examples
         --------
         >>> MapKind.VOLUME.levels([0.5, 4.0, -1.0]).tolist()
         [-1.0, 2.0, -10.0]
         """
-        plain = np.asarray(values, dtype=np.float32)
+        plain = np.asarray(values)
+        if plain.dtype.kind != "f":
+            plain = plain.astype(np.float64)
         if not self.is_ratio:
             return plain
         out = np.full_like(plain, FOLDED_LEVEL)
-        return np.maximum(np.log2(plain, out=out, where=plain > 0), np.float32(FOLDED_LEVEL))
+        np.log2(plain, out=out, where=plain > 0)
+        np.maximum(out, FOLDED_LEVEL, out=out)
+        return out
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +143,7 @@ class SurfaceMap:
     @property
     def levels(self) -> NDArray[np.float32]:
         """The values on the scale they are shown on."""
-        return self.kind.levels(self.values)
+        return self.kind.levels(self.values).astype(np.float32, copy=False)
 
 
 def distance_map(
@@ -265,8 +275,9 @@ def overall_size(shown: Spline, factor: SourceFactor) -> float:
     [1.5, 1000.0]
     """
     fit = solve(factor, shown.evaluate(factor.source), math.inf)
-    size = float(np.cbrt(abs(np.linalg.det(fit.affine[1:]))))
-    return size if math.isfinite(size) and size > 0 else 1.0
+    # By the logarithm: the determinant itself may be beyond all numbers.
+    sign, logarithm = np.linalg.slogdet(fit.affine[1:])
+    return math.exp(logarithm / 3) if sign != 0 and math.isfinite(logarithm) else 1.0
 
 
 def must_be_relative(size: float) -> bool:
@@ -298,7 +309,7 @@ def automatic_range(kind: MapKind, values: ArrayLike) -> Range:
 
 def _round_up(value: float) -> float:
     """Return the next round number; 1 where there is nothing to round."""
-    if not (math.isfinite(value) and value > 0):
+    if not TINIEST < value < 1 / TINIEST:
         return 1.0
     power = 10.0 ** math.floor(math.log10(value))
     steps = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
@@ -314,7 +325,16 @@ def _map(
     suggestion: Suggestion | None = None,
     overall: float = 1.0,
 ) -> SurfaceMap:
-    """Put a map together from all values, and from those that count."""
+    """Put a map together from all values, and from those that count.
+
+    RangeError where single precision, in which it is drawn, cannot hold them.
+    """
+    largest = max(float(np.abs(values).max()), *(float(np.abs(one).max()) for one in others), 0.0)
+    if not largest <= LARGEST_SINGLE:
+        raise RangeError(
+            f"The map leaves the range of numbers that can be drawn: it reaches {largest:.3g}. "
+            "Check the unit, and the landmarks for one that is far from all others."
+        )
     return SurfaceMap(
         kind=kind,
         values=np.asarray(values, dtype=np.float32),
@@ -336,7 +356,7 @@ def _histograms(kind: MapKind, samples: list[Matrix]) -> tuple[Histogram, ...]:
         levels = [np.clip(level, -furthest, furthest) for level in levels]
     low = min(float(level.min()) for level in levels) if kind.is_ratio else 0.0
     high = max(float(level.max()) for level in levels)
-    if not high > low:
+    if not high - low > TINIEST:
         high = low + 1.0
     edges = np.linspace(low, high, BINS + 1)
     return tuple(Histogram(edges, np.histogram(level, edges)[0] / level.size) for level in levels)

@@ -8,7 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pinwarp.core.errors import MeshError
+from pinwarp.core.errors import LandmarkError, MeshError
+from pinwarp.core.positions import LARGEST_COORDINATE, all_usable, as_numbers, first_row
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,8 +26,8 @@ class Mesh:
     Raises
     ------
     MeshError
-        When the arrays have other shapes, are empty, hold numbers that are not finite, or
-        a face names a vertex that does not exist.
+        When the arrays have other shapes, are empty, hold numbers that are not finite or beyond
+        1e150, or a face names a vertex that does not exist.
 
     Examples
     --------
@@ -39,19 +40,28 @@ class Mesh:
     faces: NDArray[np.int32]
 
     def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None:
-        points = np.array(vertices, dtype=np.float64, order="C")
-        triangles = np.array(faces, dtype=np.int32, order="C")
+        try:
+            points = as_numbers(vertices, "vertex")
+            triangles = as_numbers(faces, "face") if not _are_integers(faces) else np.array(faces)
+        except LandmarkError as error:
+            raise MeshError(str(error)) from error
         if points.ndim != 2 or points.shape[1] != 3:
             raise MeshError(f"Vertices have the shape {points.shape} instead of (m, 3).")
         if triangles.ndim != 2 or triangles.shape[1] != 3:
             raise MeshError(f"Faces have the shape {triangles.shape} instead of (t, 3).")
         if len(points) == 0 or len(triangles) == 0:
             raise MeshError("The mesh holds no triangles.")
-        if not np.isfinite(points).all():
-            row = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
-            raise MeshError(f"Vertex {row} has a coordinate that is not finite: {points[row]}.")
-        if triangles.min() < 0 or triangles.max() >= len(points):
+        if not all_usable(points):
+            row = first_row(~(np.abs(points) <= LARGEST_COORDINATE))
+            what = "too large" if np.isfinite(points[row]).all() else "not finite"
+            raise MeshError(f"Vertex {row} has a coordinate that is {what}: {points[row]}.")
+        # NaN compares as false.
+        if not (triangles.min() >= 0 and triangles.max() < len(points)):
             raise MeshError("A face names a vertex that does not exist.")
+        rounded = triangles.astype(np.int32, order="C")
+        if triangles.dtype.kind == "f" and (rounded != triangles).any():
+            raise MeshError("A face names a vertex by a number that is not whole.")
+        triangles = rounded
         points.setflags(write=False)
         triangles.setflags(write=False)
         object.__setattr__(self, "vertices", points)
@@ -79,3 +89,7 @@ class Mesh:
         """The length of the bounding box's diagonal, in the mesh's unit."""
         low, high = self.bounds
         return float(np.linalg.norm(high - low))
+
+
+def _are_integers(values: ArrayLike) -> bool:
+    return type(values) is np.ndarray and values.dtype.kind in "iu"

@@ -19,6 +19,7 @@ from scipy.spatial.distance import cdist
 from pinwarp.core import kernel
 from pinwarp.core.factor import SourceFactor, affine_coordinates, factorise
 from pinwarp.core.jacobian import determinants, jacobians
+from pinwarp.core.positions import quiet
 from pinwarp.core.spline import Spline, check_penalty, displacements, solve
 
 Matrix = NDArray[np.float64]
@@ -44,6 +45,7 @@ class Prediction:
     _coupling: Matrix
     _share: float
 
+    @quiet
     def standard_deviation(self, points: ArrayLike) -> Matrix:
         """Return the standard deviation of one coordinate of the warp.
 
@@ -84,6 +86,7 @@ class Prediction:
         return np.asarray(top.sum(axis=1) - np.einsum("mk,mk->m", bent, bent))
 
 
+@quiet
 def prediction_of(
     factor: SourceFactor, destination: ArrayLike, penalty: float
 ) -> Prediction | None:

@@ -16,6 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.distance import cdist
 
 from pinwarp.core.factor import RANK_TOLERANCE, SourceFactor
+from pinwarp.core.lengths import rms
+from pinwarp.core.positions import quiet
 from pinwarp.core.spline import Spline, check_penalty, displacements
 
 Matrix = NDArray[np.float64]
@@ -59,6 +61,7 @@ class LeaveOneOut:
     rms: float
 
 
+@quiet
 def leave_one_out(
     factor: SourceFactor, destination: ArrayLike, penalty: float = 0.0
 ) -> LeaveOneOut:
@@ -96,16 +99,16 @@ def leave_one_out(
     judged = np.isfinite(diagonal)
     if not judged.any():
         return LeaveOneOut(errors, distances, distances, expected, float("nan"))
-    rms = float(np.sqrt(np.mean(distances[judged] ** 2)))
+    overall = rms(distances[judged])
     expected = expected / np.median(expected[judged])
     standardised = distances / expected
-    if rms <= ROUNDING * float(np.abs(np.asarray(destination)).max()):
+    if overall <= ROUNDING * float(np.abs(np.asarray(destination)).max()):
         standardised = np.where(judged, 0.0, np.nan)
     else:
         # Nearly all pairs may be met to the last digit, as in made-up data: no division by 0.
         usual = float(np.median(standardised[judged]))
-        standardised = standardised / max(usual, ROUNDING * rms)
-    return LeaveOneOut(errors, distances, standardised, expected, rms)
+        standardised = standardised / max(usual, ROUNDING * overall)
+    return LeaveOneOut(errors, distances, standardised, expected, overall)
 
 
 def _pulls(
@@ -195,6 +198,7 @@ class PenaltyCurve:
         )
 
 
+@quiet
 def penalty_curve(
     factor: SourceFactor, destination: ArrayLike, penalties: ArrayLike | None = None
 ) -> PenaltyCurve:
@@ -262,6 +266,7 @@ def _suggested(penalties: Matrix, errors: Matrix) -> float | None:
     return float(penalties[best]) if worthwhile else None
 
 
+@quiet
 def bending_energy(spline: Spline) -> Matrix:
     """Return how much each coordinate of the warp bends, up to the factor 8 pi.
 

@@ -9,6 +9,7 @@ penalty's sign is told in :mod:`pinwarp.tps3d`.
 from __future__ import annotations
 
 import math
+import reprlib
 import threading
 from dataclasses import dataclass
 from enum import StrEnum
@@ -17,12 +18,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solve_triangular
 from scipy.linalg.lapack import dposv
+from scipy.spatial.distance import pdist
 
 from pinwarp.core import kernel
 from pinwarp.core.alignment import fit_similarity
-from pinwarp.core.errors import LandmarkError, PenaltyError, SingularSystemError
-from pinwarp.core.factor import SourceFactor, as_positions, factorise, solve_upper
+from pinwarp.core.errors import (
+    LandmarkCountError,
+    PenaltyError,
+    PenaltyTypeError,
+    SingularSystemError,
+)
+from pinwarp.core.factor import SourceFactor, factorise, solve_upper
 from pinwarp.core.findings import Finding, FindingKind
+from pinwarp.core.lengths import rounding_among
+from pinwarp.core.positions import as_positions, in_range, is_real_number, quiet
 
 Matrix = NDArray[np.float64]
 
@@ -78,24 +87,67 @@ class Spline:
     convention: PenaltyConvention
     findings: tuple[Finding, ...] = ()
 
+    @quiet
     def evaluate(self, points: ArrayLike) -> Matrix:
-        """Warp (m, 3) points in double precision."""
-        return kernel.evaluate(self.source, self.weights, self.affine, points)
+        """Warp (m, 3) points in double precision; RangeError where no number can hold one."""
+        points = kernel.as_points(points)
+        warped = kernel.evaluate(self.source, self.weights, self.affine, points)
+        return in_range(warped, points)
 
 
-def check_penalty(penalty: float) -> float:
-    """Return the penalty as a float; infinity, the affine fit, is allowed."""
-    value = float(penalty)
+def check_penalty(penalty: object) -> float:
+    """Return the penalty as a float; infinity, the affine fit, is allowed.
+
+    Examples
+    --------
+    >>> check_penalty(np.float32(0.5)), check_penalty(math.inf)
+    (0.5, inf)
+    """
+    if type(penalty) is float and penalty >= 0:
+        return penalty
+    if isinstance(penalty, np.ndarray) and penalty.ndim == 0:
+        # An array without dimensions is a number; one that is masked stays what it is.
+        penalty = penalty[()]
+    if not is_real_number(penalty):
+        raise PenaltyTypeError(
+            f"The warping penalty is {reprlib.repr(penalty)}, which is not a number; "
+            "it must be 0 or more."
+        )
+    try:
+        value = float(penalty)
+    except OverflowError:
+        raise PenaltyError("The warping penalty is too large for a number.") from None
     if math.isnan(value) or value < 0:
         raise PenaltyError(f"The warping penalty is {value}; it must be 0 or more.")
     return value
 
 
+def check_convention(convention: PenaltyConvention | str) -> PenaltyConvention:
+    """Return the convention, which may be given by its value.
+
+    Examples
+    --------
+    >>> check_convention("opynsim") is PenaltyConvention.OPYNSIM
+    True
+    >>> check_convention("published")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    pinwarp.core.errors.PenaltyError: The convention is 'published'; it must be ...
+    """
+    try:
+        return PenaltyConvention(convention)
+    except ValueError:
+        known = " or ".join(repr(member.value) for member in PenaltyConvention)
+        raise PenaltyError(
+            f"The convention is {reprlib.repr(convention)}; it must be {known}."
+        ) from None
+
+
+@quiet
 def solve(
     factor: SourceFactor,
     destination: ArrayLike,
     penalty: float = 0.0,
-    convention: PenaltyConvention = PenaltyConvention.REGULARISING,
+    convention: PenaltyConvention | str = PenaltyConvention.REGULARISING,
 ) -> Spline:
     """Solve the spline that takes the factorised source landmarks to a destination.
 
@@ -108,7 +160,7 @@ def solve(
     penalty
         The warping penalty, a length in mesh units; infinity is the affine fit.
     convention
-        The equation that it enters.
+        The equation that it enters, or its value.
 
     Returns
     -------
@@ -119,7 +171,7 @@ def solve(
     LandmarkError
         When the counts differ or a row cannot be used.
     PenaltyError
-        When the penalty is negative or NaN.
+        When the penalty is negative or no number, or there is no such convention.
     SingularSystemError
         When an OPYNSIM penalty hits a pole.
 
@@ -132,7 +184,7 @@ def solve(
     True
     """
     displacement, target, linear = displacements(factor, destination)
-    penalty = check_penalty(penalty)
+    penalty, convention = check_penalty(penalty), check_convention(convention)
     weights, affine, findings = solve_values(factor, displacement, penalty, convention)
     linear = linear + affine[1:]
     coefficients = np.vstack([target + affine[0] - factor.centre @ linear, linear])
@@ -171,7 +223,7 @@ def displacements(factor: SourceFactor, destination: ArrayLike) -> tuple[Matrix,
     """
     destination = as_positions(destination, "destination landmark")
     if len(destination) != len(factor.source):
-        raise LandmarkError(
+        raise LandmarkCountError(
             f"There are {len(factor.source)} source landmarks but {len(destination)} destination "
             "landmarks: each needs its counterpart."
         )
@@ -186,6 +238,7 @@ def displacements(factor: SourceFactor, destination: ArrayLike) -> tuple[Matrix,
     return displacement, target, linear
 
 
+@quiet
 def solve_values(
     factor: SourceFactor,
     values: Matrix,
@@ -208,11 +261,30 @@ def solve_values(
     findings
         What the solve noticed.
     """
+    if penalty == 0 and factor.duplicates and not factor.has_modes:
+        places = factor.places
+        if places.rank == factor.rank == 3:
+            return _solve_places(factor, places, values)
     columns = factor.rank + 1
     rotated = factor.rotate(values / factor.scale)
     gamma, findings = _bend(factor, rotated[columns:], penalty, convention)
     weights, affine = back_to_landmarks(factor, gamma, rotated[:columns])
     return weights, affine, findings
+
+
+def _solve_places(
+    factor: SourceFactor, places: SourceFactor, values: Matrix
+) -> tuple[Matrix, Matrix, tuple[Finding, ...]]:
+    """Solve at penalty 0 with each place once: what the eigenvalues would say, but sooner.
+
+    Landmarks at one place can only be met in the middle, and share its weight.
+    """
+    place_of, shares = factor.place_of, np.bincount(factor.place_of)[:, None]
+    means = np.zeros((len(shares), values.shape[1]))
+    np.add.at(means, place_of, values)
+    weights, affine, findings = solve_values(places, means / shares, 0.0)
+    affine[0] += (factor.centre - places.centre) @ affine[1:]
+    return (weights / shares)[place_of], affine, findings
 
 
 def back_to_landmarks(
@@ -229,7 +301,8 @@ def _bend(
     factor: SourceFactor, values: Matrix, penalty: float, convention: PenaltyConvention
 ) -> tuple[Matrix, tuple[Finding, ...]]:
     """Solve ``(N +- penalty I) gamma = values``, the part of the system beyond the affine one."""
-    if not len(values) or math.isinf(penalty):
+    at_one_place = factor.rank == 0 and penalty == 0
+    if not len(values) or math.isinf(penalty) or at_one_place:
         return np.zeros_like(values), ()
     regularising = convention is PenaltyConvention.REGULARISING or penalty == 0
     if regularising and factor.well_spaced and not factor.has_modes:
@@ -283,10 +356,10 @@ def _conflicts(factor: SourceFactor, destination: Matrix, penalty: float) -> tup
     if penalty > 0:
         return ()
     found = []
-    for i, j in factor.duplicates:
-        apart = float(np.linalg.norm(destination[i] - destination[j]))
-        if apart > 1e-9 * float(np.abs(destination).max()):
-            found.append(Finding(FindingKind.CONFLICT, (i, j), apart))
+    for rows in factor.duplicates:
+        apart = float(pdist(destination[list(rows)]).max())
+        if apart > rounding_among(destination):
+            found.append(Finding(FindingKind.CONFLICT, rows, apart))
     return tuple(found)
 
 

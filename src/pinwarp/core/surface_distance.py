@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import KDTree
 
 from pinwarp.core import kernel
+from pinwarp.core.errors import RangeError
+from pinwarp.core.lengths import rms
 from pinwarp.core.mesh import Mesh
 
 Matrix = NDArray[np.float64]
@@ -23,6 +25,8 @@ LEAF = 4
 WORTH_COMPILING = 2000
 # Below so many places (a few milliseconds) a second thread is not worth starting.
 WORTH_THREADS = 4000
+# Meshes of another size, or smaller than its reciprocal, are refused.
+LARGEST_SIZE = 1e60
 # A triangle flatter than this is taken for its edges: its normal would be mostly rounding.
 FLAT = 1e-8
 
@@ -49,6 +53,12 @@ class SurfaceIndex:
     """
 
     def __init__(self, mesh: Mesh, like: SurfaceIndex | None = None) -> None:
+        # The fourth powers of lengths are compared.
+        if mesh.diagonal > LARGEST_SIZE or 0 < mesh.diagonal < 1 / LARGEST_SIZE:
+            raise RangeError(
+                f"A mesh of the size {mesh.diagonal:.3g} leaves the range of numbers that "
+                "distances can be measured in: check its unit."
+            )
         self.mesh = mesh
         corners = mesh.vertices[mesh.faces]
         levels = max(0, math.ceil(math.log2(len(corners) / LEAF)))
@@ -260,7 +270,7 @@ class DistanceFigures:
         values = np.asarray(distances, dtype=np.float64)
         return cls(
             mean=float(values.mean()),
-            rms=float(np.sqrt(np.mean(values * values))),
+            rms=rms(values),
             percentile_95=float(np.percentile(values, 95)),
             maximum=float(values.max()),
         )

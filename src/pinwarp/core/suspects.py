@@ -13,10 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.distance import cdist
 
 from pinwarp.core.alignment import fit_similarity
-from pinwarp.core.factor import RANK_TOLERANCE, SourceFactor, as_positions
+from pinwarp.core.factor import RANK_TOLERANCE, SourceFactor
 from pinwarp.core.findings import Finding, FindingKind
+from pinwarp.core.positions import as_positions, quiet
 from pinwarp.core.quality import ROUNDING, LeaveOneOut, leave_one_out
-from pinwarp.core.spline import check_penalty, displacements, solve
+from pinwarp.core.spline import Spline, check_penalty, displacements, solve
 
 Matrix = NDArray[np.float64]
 
@@ -36,12 +37,14 @@ SHARPLY = 0.7
 MIRRORED = 0.5
 
 
+@quiet
 def suspects(
     factor: SourceFactor,
     destination: ArrayLike,
     penalty: float = 0.0,
     *,
     left_out: LeaveOneOut | None = None,
+    fit: Spline | None = None,
 ) -> tuple[Finding, ...]:
     """Judge every pair by what the others say about it.
 
@@ -55,6 +58,8 @@ def suspects(
         The warping penalty of the regularising convention, in mesh units.
     left_out
         The same pairs' leave-one-out errors at that penalty, where they are known already.
+    fit
+        Their affine fit, where it is.
 
     Returns
     -------
@@ -75,7 +80,7 @@ def suspects(
     """
     result = left_out or leave_one_out(factor, destination, penalty)
     target = np.asarray(destination, dtype=np.float64)
-    linear = solve(factor, target, np.inf).affine[1:]
+    linear = (fit or solve(factor, target, np.inf)).affine[1:]
     apart, ends = cdist(factor.source, factor.source), cdist(target, target)
     # The affine fit knows how the bones differ along each axis, the median cannot be led astray.
     fitted = cdist(factor.source @ linear, factor.source @ linear)
@@ -119,6 +124,7 @@ def _torn(fitted: Matrix, ends: Matrix) -> Matrix:
     return torn
 
 
+@quiet
 def swapped_pairs(
     factor: SourceFactor, destination: ArrayLike, penalty: float = 0.0
 ) -> tuple[Finding, ...]:
@@ -185,6 +191,7 @@ def _exchange(pulls: Matrix, target: Matrix) -> Matrix:
     return np.asarray(2 * (across + across.T - own[:, None] - own))
 
 
+@quiet
 def is_mirrored(source: ArrayLike, destination: ArrayLike) -> bool:
     """Whether a reflection fits the pairs far better than a rotation: left and right bones.
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import platformdirs
@@ -15,10 +16,12 @@ from qtpy.QtWidgets import QApplication
 from threadpoolctl import threadpool_limits
 
 from pinwarp.core import kernel, surface_distance
+from pinwarp.core.errors import words_of
 from pinwarp.gui.files.documents import Opening
 from pinwarp.gui.views.fast_view import default_format
 from pinwarp.gui.window.main_window import MainWindow
 from pinwarp.gui.window.window_dialogs import WindowDialogs
+from pinwarp.io.atomic import sweep
 from pinwarp.io.samples import sample_session
 
 # Drawing a million triangles in software takes a while; a minute means that something hangs.
@@ -69,14 +72,25 @@ def make_application() -> QApplication:
 
 
 def user_settings() -> QSettings:
-    """Return the settings in the user's configuration folder."""
-    folder = platformdirs.user_config_path("pinwarp", ensure_exists=True)
-    return QSettings(str(folder / "settings.ini"), QSettings.Format.IniFormat)
+    """Return the settings in the user's configuration folder.
+
+    Raises
+    ------
+    OSError
+        When nothing can be remembered there.
+    """
+    folder = platformdirs.user_config_path("pinwarp")
+    folder.mkdir(parents=True, exist_ok=True)
+    settings = QSettings(str(folder / "settings.ini"), QSettings.Format.IniFormat)
+    if not settings.isWritable() or settings.status() is QSettings.Status.AccessError:
+        raise OSError(errno.EACCES, os.strerror(errno.EACCES), settings.fileName())
+    return settings
 
 
 def no_settings() -> QSettings:
     """Return settings that remember nothing: a picture shows the window as it comes."""
-    return QSettings(os.devnull, QSettings.Format.IniFormat)
+    # Below a file there is no folder. Not the null device: for root, Qt puts a file in its place.
+    return QSettings(str(Path(__file__) / "none.ini"), QSettings.Format.IniFormat)
 
 
 def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None) -> int:
@@ -99,40 +113,76 @@ def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None)
     application = make_application()
     # The spline's own threads and BLAS's would fight over the cores.
     with threadpool_limits(limits=1, user_api="blas"):
-        dialogs = PrintedMessages() if screenshot is not None else None
-        window = (
-            MainWindow(user_settings(), state_folder=platformdirs.user_state_path("pinwarp"))
-            if screenshot is None
-            else MainWindow(no_settings(), dialogs)
-        )
+        if screenshot is None:
+            return _run_for_user(application, opening, demo=demo)
+        dialogs = PrintedMessages()
+        window = MainWindow(no_settings(), dialogs)
         window.show()
         begin(window, opening, demo=demo)
-        if screenshot is None:
-            # Loading numba takes a second of the interpreter's time: after the first picture.
-            warm_up = threading.Thread(target=_warm_up, daemon=True)
-            QTimer.singleShot(_WARM_UP_AFTER_MS, warm_up.start)
-            return int(application.exec())
         saved = save_picture(window, screenshot)
-        failed = not saved or bool(dialogs is not None and dialogs.errors)
+        failed = not saved or bool(dialogs.errors)
         window.editor.replace_all(window.editor.session, None)
         window.close()
         return 1 if failed else 0
 
 
-def _warm_up() -> None:
-    """Load all that is compiled, what is needed first before the rest."""
+def _run_for_user(application: QApplication, opening: Opening, *, demo: bool) -> int:
+    window = user_window()
+    with window.faults.taken_over():
+        window.show()
+        # From the event loop: what goes wrong there must not keep the window from starting.
+        QTimer.singleShot(0, window, lambda: begin(window, opening, demo=demo))
+        # Loading numba takes a second of the interpreter's time: after the first picture.
+        folders = {path.parent for path in window.parts.documents.recent}
+        in_background = threading.Thread(target=_tidy_and_warm_up, args=(folders,), daemon=True)
+        QTimer.singleShot(_WARM_UP_AFTER_MS, in_background.start)
+        return int(application.exec())
+
+
+def user_window(dialogs: WindowDialogs | None = None) -> MainWindow:
+    """Return the window with all that the user's folders remember, or without where they cannot.
+
+    Parameters
+    ----------
+    dialogs
+        Asks and tells; the real ones when None.
+    """
+    try:
+        settings, problem = user_settings(), ""
+    except (OSError, RuntimeError) as error:  # RuntimeError: nobody knows the home folder
+        settings, problem = no_settings(), words_of(error)
+    try:
+        state_folder: Path | None = platformdirs.user_state_path("pinwarp")
+    except RuntimeError:
+        state_folder = None
+    window = MainWindow(settings, dialogs, state_folder)
+    if problem:
+        window.note("Settings are not remembered", problem)
+    return window
+
+
+def _tidy_and_warm_up(folders: Iterable[Path]) -> None:
+    """Remove what was left, and load all that is compiled, what is needed first before the rest.
+
+    Parameters
+    ----------
+    folders
+        Where a window that was killed may have left half a session.
+    """
+    for folder in folders:
+        sweep(folder)
     kernel.warm_up()
     surface_distance.warm_up()
 
 
 def begin(window: MainWindow, opening: Opening, *, demo: bool = False) -> None:
     """Offer what was lost before; without it, open what the command line names."""
-    if window.recovery.offer(instead_of=opening.paths):
+    if window.parts.recovery.offer(instead_of=opening.paths):
         return
     if demo:
-        window.documents.open_session(sample_session(), as_new=True)
+        window.parts.documents.open_session(sample_session(), as_new=True)
     else:
-        window.documents.open(opening)
+        window.parts.documents.open(opening)
 
 
 def save_picture(window: MainWindow, path: Path) -> bool:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
 
 from pinwarp.io.atomic import atomic_path
+from pinwarp.io.csv_text import LARGEST
 from pinwarp.io.file_names import backup_of
+from pinwarp.io.reading import open_regular
 
 
 def write_keeping_previous(path: Path, write: Callable[[Path], None]) -> OSError | None:
@@ -44,7 +48,7 @@ def write_keeping_previous(path: Path, write: Callable[[Path], None]) -> OSError
     """
     previous, unreadable = None, None
     try:
-        previous = path.read_bytes()
+        previous = _content(path)
     except FileNotFoundError:
         pass
     except OSError as error:
@@ -54,7 +58,7 @@ def write_keeping_previous(path: Path, write: Callable[[Path], None]) -> OSError
         return unreadable
     try:
         # Saving the same twice must not push out the last version that was different.
-        if path.read_bytes() == previous:
+        if _content(path) == previous:
             return None
         with atomic_path(backup_of(path)) as temporary:
             temporary.write_bytes(previous)
@@ -62,3 +66,11 @@ def write_keeping_previous(path: Path, write: Callable[[Path], None]) -> OSError
     except OSError as error:
         return error
     return None
+
+
+def _content(path: Path) -> bytes:
+    """Return all of a file; one that no session is as large as raises ``EFBIG``."""
+    with open_regular(path) as file:
+        if os.fstat(file.fileno()).st_size > LARGEST:
+            raise OSError(errno.EFBIG, os.strerror(errno.EFBIG), str(path))
+        return file.readall()

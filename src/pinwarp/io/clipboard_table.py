@@ -12,7 +12,6 @@ from pinwarp.core.landmarks import Landmark, Role
 from pinwarp.io.csv_cells import (
     YES_NO,
     coordinates_text,
-    formula_quoted,
     formula_unquoted,
     is_number,
     position_of,
@@ -78,12 +77,12 @@ def clipboard_text(landmarks: Iterable[Landmark]) -> str:
     lines = [csv_line(_COLUMNS, "\t")]
     for landmark in landmarks:
         cells = [
-            formula_quoted(landmark.name),
+            landmark.name,
             landmark.role.value,
             "1" if landmark.enabled else "0",
             *coordinates_text(landmark.source),
             *coordinates_text(landmark.destination),
-            formula_quoted(landmark.note),
+            landmark.note,
         ]
         lines.append(csv_line(cells, "\t"))
     return "".join(lines)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import zipfile
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,10 +15,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.core.components import Components
-from pinwarp.core.errors import FileFormatError
-from pinwarp.core.spline import PenaltyConvention, Spline
+from pinwarp.core.errors import FileFormatError, PinwarpError
+from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
+from pinwarp.core.spline import Spline
 from pinwarp.io.atomic import atomic_path
+from pinwarp.io.csv_cells import shortened
+from pinwarp.io.json_text import read_json
+from pinwarp.io.reading import read_content
+from pinwarp.io.setting_keys import plain_settings, settings_of
 
 COEFFICIENT_SUFFIXES = (".json", ".npz")
 FORMAT = "pinwarp-coefficients"
@@ -32,17 +38,33 @@ EQUATION = (
     "axis is then mirrored about the middle of its bounds."
 )
 
+# A landmark takes some hundred bytes, whichever way it is written.
+_LARGEST = 64 << 20
 _ARRAYS = ("source_landmarks", "weights", "affine")
 _TEXTS = (
     "unit",
-    "penalty_convention",
-    "components",
     "source_sha256",
     "destination_sha256",
     "source_mirrored",
     "destination_mirrored",
     "pinwarp",
 )
+
+
+_DAMAGE = (
+    KeyError,
+    ValueError,
+    TypeError,
+    ArithmeticError,
+    OSError,
+    EOFError,
+    NotImplementedError,
+    RuntimeError,
+    MemoryError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+"""What Python and numpy raise over bytes that are no coefficients."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,10 +79,8 @@ class Coefficients:
         Of the landmarks, row by row.
     unit
         Of both meshes.
-    components, blend
-        What of the warp this is; see :func:`pinwarp.core.components.applied`.
-    planar
-        Whether nearly planar landmarks were treated as planar.
+    settings
+        How it was solved, and what of it this is.
     source_sha256, destination_sha256
         The hashes of the mesh files; empty where there was none.
     source_mirrored, destination_mirrored
@@ -74,9 +94,7 @@ class Coefficients:
     spline: Spline
     names: tuple[str, ...]
     unit: str = ""
-    components: str = Components.FULL.value
-    blend: float = 1.0
-    planar: bool = False
+    settings: WarpSettings = USUAL_SETTINGS
     source_sha256: str = ""
     destination_sha256: str = ""
     source_mirrored: str = ""
@@ -143,15 +161,13 @@ def read_coefficients(path: str | Path) -> Coefficients:
     FileFormatError
         When the file is missing, of another kind, of a newer version, or damaged.
     """
-    path = Path(path)
+    read = _read_json if _suffix(path) == ".json" else _read_npz
+    content = read_content(path, what="coefficients", largest=_LARGEST)
     try:
-        fields = _read_json(path) if _suffix(path) == ".json" else _read_npz(path)
-        return _coefficients(fields)
-    except FileNotFoundError:
-        raise FileFormatError(path, "There is no such file.") from None
-    except (KeyError, ValueError, TypeError, OSError, EOFError, zipfile.BadZipFile) as error:
-        if isinstance(error, FileFormatError):
-            raise
+        return _coefficients(read(content.data))
+    except FileFormatError:
+        raise
+    except (*_DAMAGE, PinwarpError) as error:
         reason = f"{error.args[0]!r} is missing" if isinstance(error, KeyError) else str(error)
         raise FileFormatError(
             path, f"These are no coefficients of a warp ({reason}). Export them again."
@@ -172,18 +188,13 @@ def _suffix(path: str | Path) -> str:
 def _fields(coefficients: Coefficients) -> dict[str, Any]:
     """Return all that is written, in the order in which a person wants to read it."""
     spline = coefficients.spline
-    penalty = spline.penalty
     return {
         "format": FORMAT,
         "format_version": FORMAT_VERSION,
         "pinwarp": coefficients.version,
         "equation": EQUATION,
         "unit": coefficients.unit,
-        "warping_penalty": penalty,
-        "penalty_convention": spline.convention.value,
-        "components": coefficients.components,
-        "blend": float(coefficients.blend),
-        "planar": coefficients.planar,
+        **plain_settings(coefficients.settings),
         "source_sha256": coefficients.source_sha256,
         "source_scaled": float(coefficients.source_scaled),
         "source_mirrored": coefficients.source_mirrored,
@@ -212,19 +223,22 @@ def _json(fields: Mapping[str, Any]) -> str:
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
-def _read_json(path: Path) -> dict[str, Any]:
-    fields = json.loads(path.read_text(encoding="utf-8"))
+def _read_json(data: bytes) -> dict[str, Any]:
+    fields, repeated = read_json(data.decode("utf-8"))
     if not isinstance(fields, dict):
         raise ValueError("it is not an object")
+    if repeated:
+        # Which of the two was meant, nobody knows; a wrong warp would look like any other.
+        raise ValueError(f"{shortened(repeated[0])} is there twice")
     return fields
 
 
-def _read_npz(path: Path) -> dict[str, Any]:
+def _read_npz(data: bytes) -> dict[str, Any]:
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        if sum(entry.file_size for entry in archive.infolist()) > _LARGEST:
+            raise ValueError("it unpacks to more than any warp has")
     # Without pickles: a file from a stranger must not run code.
-    with path.open("rb") as content:
-        file = np.load(content, allow_pickle=False)
-        if not isinstance(file, np.lib.npyio.NpzFile):
-            raise ValueError("it holds a single array")
+    with np.load(io.BytesIO(data), allow_pickle=False) as file:
         return {key: file[key].tolist() for key in file.files}
 
 
@@ -239,23 +253,19 @@ def _coefficients(fields: Mapping[str, Any]) -> Coefficients:
     rows = {"affine": 4, "source_landmarks": len(names), "weights": len(names)}
     for key, array in arrays.items():
         _check(key, array, rows[key])
-    penalty = float(fields["warping_penalty"])
-    if not penalty >= 0:
-        raise ValueError(f"the penalty is {penalty}")
+    settings = settings_of(fields)
     spline = Spline(
         source=arrays["source_landmarks"],
         weights=arrays["weights"],
         affine=arrays["affine"],
-        penalty=penalty,
-        convention=PenaltyConvention(texts["penalty_convention"]),
+        penalty=settings.penalty,
+        convention=settings.convention,
     )
     return Coefficients(
         spline=spline,
         names=names,
         unit=texts["unit"],
-        components=Components(texts["components"]).value,
-        blend=float(fields["blend"]),
-        planar=bool(fields["planar"]),
+        settings=settings,
         source_sha256=texts["source_sha256"],
         destination_sha256=texts["destination_sha256"],
         source_mirrored=texts["source_mirrored"],

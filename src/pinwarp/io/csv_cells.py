@@ -13,8 +13,10 @@ _NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity)", re.IGNORECASE)
 YES_NO = {"1": True, "true": True, "yes": True, "": True, "0": False, "false": False, "no": False}
 """What a cell that is on or off may say, in lower case; an empty one is on."""
 
-_FORMULA = re.compile(r"'*[=+\-@\t\r]")
-_QUOTED_FORMULA = re.compile(r"''*[=+\-@\t\r]")
+# The wide forms are what an input method writes for the others.
+_STARTS = r"[=+\-@\t\r\n＝＋－＠]"
+_FORMULA = re.compile(f"'*{_STARTS}")
+_QUOTED_FORMULA = re.compile(f"''*{_STARTS}")
 
 
 def number_of(cell: str, separator: str) -> float:
@@ -66,6 +68,26 @@ def is_number(cell: str, separator: str) -> bool:
     return True
 
 
+class Numeral(str):
+    """The text of a number in a cell that holds one: it stays a number to a spreadsheet.
+
+    A name may look the same, such as ``-7``, and is text.
+    """
+
+    __slots__ = ()
+
+
+def numeral(text: str) -> str:
+    """Return a cell that is meant as a number as one, if it is one.
+
+    Examples
+    --------
+    >>> [type(numeral(text)).__name__ for text in ("-1.5e3", "-1.5e3+cmd", "-inf")]
+    ['Numeral', 'str', 'str']
+    """
+    return Numeral(text) if _NUMBER.fullmatch(text) else text
+
+
 def formula_quoted(text: str) -> str:
     """Put a single quote before text that a spreadsheet would run as a formula.
 
@@ -98,7 +120,7 @@ def coordinates_text(position: Sequence[float] | None) -> tuple[str, str, str]:
     """
     if position is None:
         return ("", "", "")
-    x, y, z = (repr(float(value)) for value in position)
+    x, y, z = (numeral(repr(float(value))) for value in position)
     return (x, y, z)
 
 

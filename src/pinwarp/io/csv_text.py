@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError
+from pinwarp.io.csv_cells import Numeral, formula_quoted
 from pinwarp.io.reading import read_content
 
 LARGEST = 64 << 20
@@ -165,16 +166,45 @@ def rows_of(lines: Sequence[str], separator: str, first_line: int = 1) -> Iterat
             start = broken + 1
 
 
-def csv_line(cells: Iterable[str], separator: str = ",") -> str:
-    r"""Return one line of separated cells, quoted per RFC 4180 where they need it.
+def csv_line(cells: Iterable[str], separator: str = ",", *, all_in_quotes: bool = False) -> str:
+    r"""Return one line of a table that a spreadsheet may open: none of its cells is run.
+
+    All tables are written by it. What :func:`~pinwarp.io.csv_cells.formula_quoted` put before a
+    cell is taken back where the table is read.
+
+    Parameters
+    ----------
+    cells
+        Text, or a :class:`~pinwarp.io.csv_cells.Numeral`, which stays a number.
+    separator
+        What is between two cells.
+    all_in_quotes
+        Whether cells are in quotes that do not need them.
 
     Examples
     --------
-    >>> csv_line(["a", "b, c", "1.5"])
-    'a,"b, c",1.5\n'
+    >>> csv_line(["a", "b, c", "=1+1", "-7", Numeral("-7")])
+    'a,"b, c",\'=1+1,\'-7,-7\n'
+    """
+    safe = (cell if isinstance(cell, Numeral) else formula_quoted(cell) for cell in cells)
+    return plain_line(safe, separator, all_in_quotes=all_in_quotes)
+
+
+def plain_line(cells: Iterable[str], separator: str = ",", *, all_in_quotes: bool = False) -> str:
+    r"""Return one line of separated cells for a program that is no spreadsheet.
+
+    Parameters
+    ----------
+    cells, separator, all_in_quotes
+        As in :func:`csv_line`. Cells are quoted per RFC 4180 where they need it.
+
+    Examples
+    --------
+    >>> plain_line(["a", "b, c", "=1+1"])
+    'a,"b, c",=1+1\n'
     """
     quoted = [
-        '"' + cell.replace('"', '""') + '"' if _NEEDS_QUOTES.search(cell) else cell
+        '"' + cell.replace('"', '""') + '"' if all_in_quotes or _NEEDS_QUOTES.search(cell) else cell
         for cell in cells
     ]
     return separator.join(quoted) + "\n"

@@ -2,24 +2,10 @@
 
 from __future__ import annotations
 
-import errno
 import os
-import sys
 from pathlib import Path
 
-if sys.platform == "win32":
-    import msvcrt
-
-    def _lock(handle: int) -> None:
-        msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
-else:
-    import fcntl
-
-    def _lock(handle: int) -> None:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-
-
-_HELD = (errno.EACCES, errno.EAGAIN, errno.EWOULDBLOCK, errno.EDEADLK)
+from filelock import lock_descriptor
 
 
 class FileLock:
@@ -39,6 +25,7 @@ class FileLock:
     None
     """
 
+    # Not filelock's own FileLock: it would make the file that tells a window's folder from others.
     def __init__(self, handle: int) -> None:
         self._handle: int | None = handle
 
@@ -55,11 +42,12 @@ class FileLock:
         """
         handle = os.open(path, os.O_RDWR)
         try:
-            _lock(handle)
-        except OSError as error:
-            if error.errno in _HELD:
-                os.close(handle)
-                return None
+            is_ours = lock_descriptor(handle, blocking=False)
+        except OSError:
+            is_ours = True
+        if not is_ours:
+            os.close(handle)
+            return None
         return cls(handle)
 
     def release(self) -> None:

@@ -7,12 +7,14 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from pinwarp.core.components import Components
 from pinwarp.core.errors import FileFormatError
+from pinwarp.core.names import visible
 from pinwarp.io.csv_cells import as_sentence, formula_unquoted, shortened
 from pinwarp.io.csv_text import Row, lines_of, read_text, refuse_binary, rows_of
-from pinwarp.io.session_header import penalty_of
+from pinwarp.io.setting_keys import penalty_of
 
 REQUIRED = ("name", "destination_landmarks")
 OPTIONAL = ("destination_mesh", "penalty", "components")
@@ -38,6 +40,8 @@ class Subject:
         Absolute paths; there need not be a mesh.
     penalty, components
         For this subject alone; None where the row leaves them open.
+    problem
+        Why the row cannot be used, as a sentence; empty where it can.
     """
 
     name: str
@@ -46,6 +50,7 @@ class Subject:
     destination_mesh: Path | None = None
     penalty: float | None = None
     components: Components | None = None
+    problem: str = ""
 
 
 @dataclass(frozen=True)
@@ -83,8 +88,9 @@ def read_manifest(path: str | Path) -> Manifest:
     Raises
     ------
     FileFormatError
-        When a column is missing or a row cannot be used; the message names the line. Whether the
-        files are there is not looked at.
+        When a column is missing, or a row has no name that is its own; the message names the
+        line. Another row that cannot be used is a subject with a problem, and the others go on.
+        Whether the files are there is not looked at.
 
     Examples
     --------
@@ -112,19 +118,27 @@ def read_manifest(path: str | Path) -> Manifest:
     subjects: dict[str, Subject] = {}
     for row in rows[1:]:
         try:
-            subject = _subject(row, columns, separator, place.parent)
-            if earlier := subjects.get(subject.name.casefold()):
+            subject = _subject(row, columns, separator, place)
+            # Some systems take two names for one whose letters are composed in other ways.
+            look = visible(subject.name).casefold()
+            if earlier := subjects.get(look):
                 raise ValueError(
-                    f"the name {shortened(subject.name)} was used in line {earlier.line}: "
+                    f"the name {shortened(subject.name)} was used in line {earlier.line}"
+                    f"{_unlike(subject.name, earlier.name)}: "
                     "the files of one would replace the other's"
                 )
         except ValueError as error:
             raise FileFormatError(place, as_sentence(str(error)), row.line) from None
-        subjects[subject.name.casefold()] = subject
+        subjects[look] = subject
     if not subjects:
         raise FileFormatError(place, "There is no subject in it: write one row for each.")
     unused = tuple(column for column in columns if column and column not in _COLUMNS)
     return Manifest(place, tuple(subjects.values()), unused)
+
+
+def _unlike(name: str, other: str) -> str:
+    """Say that two names only look alike, where it is so."""
+    return "" if name.casefold() == other.casefold() else " in letters that look the same"
 
 
 def _columns(path: Path, rows: Sequence[Row]) -> tuple[str, ...]:
@@ -144,26 +158,40 @@ def _columns(path: Path, rows: Sequence[Row]) -> tuple[str, ...]:
     return columns
 
 
-def _subject(row: Row, columns: Sequence[str], separator: str, folder: Path) -> Subject:
-    """Make a subject of one row, or raise a ValueError with the reason."""
+def _subject(row: Row, columns: Sequence[str], separator: str, manifest: Path) -> Subject:
+    """Make a subject of one row, or raise a ValueError where it has no name."""
     if row.problem:
         raise ValueError(row.problem)
-    if any(cell.strip() for cell in row.cells[len(columns) :]):
-        raise ValueError(f"the row has {len(row.cells)} cells for {len(columns)} columns")
     cells = dict(zip(columns, (cell.strip() for cell in row.cells), strict=False))
     name = checked_name(formula_unquoted(cells.get("name", "")))
-    landmarks, mesh = (cells.get(f"destination_{what}", "") for what in ("landmarks", "mesh"))
-    if not landmarks:
-        raise ValueError(f"{shortened(name)} has no destination_landmarks")
-    penalty, components = cells.get("penalty", ""), cells.get("components", "")
-    return Subject(
-        name=name,
-        line=row.line,
-        destination_landmarks=_path(landmarks, folder),
-        destination_mesh=_path(mesh, folder) if mesh else None,
-        penalty=penalty_of(penalty, separator) if penalty else None,
-        components=_components(components) if components else None,
-    )
+    try:
+        if any(cell.strip() for cell in row.cells[len(columns) :]):
+            raise ValueError(f"the row has {len(row.cells)} cells for {len(columns)} columns")
+        values = {
+            column: _value(column, cells.get(column, ""), separator, manifest.parent)
+            for column in _COLUMNS[1:]
+        }
+    except ValueError as error:
+        return Subject(name, row.line, manifest, problem=as_sentence(str(error)))
+    return Subject(name, row.line, **values)
+
+
+def _value(column: str, text: str, separator: str, folder: Path) -> Any:
+    """Read a cell, or raise a ValueError with the reason, which names the column."""
+    if not text:
+        if column in REQUIRED:
+            raise ValueError(f"there is no {column}")
+        return None
+    try:
+        match column:
+            case "penalty":
+                return penalty_of(text, separator)
+            case "components":
+                return _components(text)
+            case _:
+                return _path(text, folder)
+    except ValueError as error:
+        raise ValueError(f"in the column {column!r}: {error}") from None
 
 
 def checked_name(name: str) -> str:
@@ -197,7 +225,10 @@ def checked_name(name: str) -> str:
 
 
 def _path(text: str, folder: Path) -> Path:
-    return Path(os.path.abspath(folder / Path(text).expanduser()))
+    try:
+        return Path(os.path.abspath(folder / Path(text).expanduser()))
+    except RuntimeError:
+        raise ValueError(f"there is no user {shortened(Path(text).parts[0])}") from None
 
 
 def _components(text: str) -> Components:
@@ -205,4 +236,4 @@ def _components(text: str) -> Components:
         return Components(text.lower().replace("_", " ").replace("-", " "))
     except ValueError:
         known = ", ".join(part.value for part in Components)
-        raise ValueError(f"the components {shortened(text)} are none of {known}") from None
+        raise ValueError(f"{shortened(text)} is none of {known}") from None

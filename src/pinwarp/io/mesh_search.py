@@ -114,9 +114,10 @@ def _files(
             except OSError:
                 continue
             for entry in here:
-                if entry.is_dir(follow_symlinks=False):
+                # Asking the entry itself raises where a link leads round in a circle.
+                if os.path.isdir(entry.path) and not entry.is_symlink():
                     if not entry.name.startswith("."):
                         inner.append(Path(entry.path))
-                elif entry.is_file():
+                elif os.path.isfile(entry.path):
                     yield Path(entry.path)
         level = inner

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -132,7 +133,7 @@ def read_mesh(
             progress(share, words)
 
     read = _READERS.get(_suffix(path))
-    if read is None and not Path(path).is_dir():
+    if read is None and not os.path.isdir(path):
         raise _unknown_suffix(path)
     content = read_content(path, what="mesh", progress=lambda share: tell(0.3 * share, "Reading"))
     assert read is not None, "a folder is refused above"

@@ -11,7 +11,7 @@ from xml.etree import ElementTree as ET
 
 from pinwarp.io.atomic import write_atomically
 from pinwarp.io.chart import SVG
-from pinwarp.io.csv_cells import formula_quoted
+from pinwarp.io.csv_cells import numeral
 from pinwarp.io.csv_text import csv_line
 
 _STYLE = """
@@ -165,9 +165,8 @@ def write_figures(path: str | Path, figures: Sequence[Figure]) -> None:
     """
     lines = [csv_line(_CSV_HEADER)]
     for figure in figures:
-        value = "" if math.isnan(figure.value) else repr(float(figure.value))
-        words = (figure.section, formula_quoted(figure.item), figure.quantity)
-        lines.append(csv_line((*words, value, figure.unit)))
+        value = "" if math.isnan(figure.value) else numeral(repr(float(figure.value)))
+        lines.append(csv_line((figure.section, figure.item, figure.quantity, value, figure.unit)))
     write_atomically(path, "".join(lines))
 
 

@@ -6,14 +6,16 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from pinwarp.core.errors import LandmarkError, PenaltyError
+from pinwarp.core.errors import LandmarkError
 from pinwarp.core.landmarks import Landmark, duplicate_names
+from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
 from pinwarp.io.atomic import write_atomically
 from pinwarp.io.csv_cells import shortened
 from pinwarp.io.csv_text import LONGEST_CELL, lines_of, read_text
 from pinwarp.io.mesh_reference import MeshReference, mesh_text
-from pinwarp.io.session_header import VERSION, is_header, read_header, read_values
+from pinwarp.io.session_header import VERSION, header_line, is_header, read_header, read_values
 from pinwarp.io.session_table import read_table, table_lines
+from pinwarp.io.setting_keys import setting_lines
 
 __all__ = ["MeshReference", "SessionRecord", "read_session", "write_session"]
 
@@ -28,18 +30,10 @@ class SessionRecord:
         In the order of the table.
     source_mesh, destination_mesh
         The meshes, or None where none was chosen yet.
-    warping_penalty
-        Not negative; infinity stands for the affine fit.
-    penalty_convention
-        ``"regularising"`` or ``"opynsim"``.
+    settings
+        How the warp is solved and applied.
     unit
         The unit of length, for display.
-    planar
-        Whether nearly planar landmarks are treated as planar.
-    components
-        What of the warp is applied: a value of :class:`~pinwarp.core.components.Components`.
-    blend
-        How far from the aligned source to these components, from 0 to 1.
     unknown
         Header lines this version does not know, as (key, text); a line without a key has
         an empty one.
@@ -48,12 +42,8 @@ class SessionRecord:
     landmarks: tuple[Landmark, ...] = ()
     source_mesh: MeshReference | None = None
     destination_mesh: MeshReference | None = None
-    warping_penalty: float = 0.0
-    penalty_convention: str = "regularising"
+    settings: WarpSettings = USUAL_SETTINGS
     unit: str = "mm"
-    planar: bool = False
-    components: str = "full"
-    blend: float = 1.0
     unknown: tuple[tuple[str, str], ...] = ()
 
 
@@ -72,9 +62,9 @@ def write_session(path: str | Path, record: SessionRecord, *, relative_meshes: b
 
     Raises
     ------
-    LandmarkError, PenaltyError
-        When two landmarks have one name, a name or note is longer than 100,000 characters,
-        or the penalty is negative or not a number: it could not be read back.
+    LandmarkError
+        When two landmarks have one name, or a name or note is longer than 100,000 characters:
+        it could not be read back.
     OSError
         When the file cannot be written; an older one is untouched.
 
@@ -95,8 +85,6 @@ def write_session(path: str | Path, record: SessionRecord, *, relative_meshes: b
                 f"The name or note of {shortened(landmark.name)} is too long to be read back. "
                 f"Shorten it to {LONGEST_CELL:,} characters."
             )
-    if not record.warping_penalty >= 0:
-        raise PenaltyError(f"The warping penalty is {record.warping_penalty}; it cannot be saved.")
     folder = Path(os.path.abspath(path)).parent if relative_meshes else None
     header = [("pinwarp-session", str(VERSION))]
     for key, mesh in (
@@ -109,21 +97,13 @@ def write_session(path: str | Path, record: SessionRecord, *, relative_meshes: b
                 header.append((key.replace("mesh", "mirrored"), mesh.mirrored))
             if mesh.scaled != 1:
                 header.append((key.replace("mesh", "scaled"), repr(float(mesh.scaled))))
-    header += [
-        ("warping_penalty", repr(float(record.warping_penalty))),
-        ("penalty_convention", record.penalty_convention),
-        ("unit", record.unit),
-    ]
-    if record.planar:
-        header.append(("treat_as_planar", "yes"))
-    # Only what is not as usual: most files need no word about it.
-    if record.components != SessionRecord.components:
-        header.append(("components", record.components))
-    if record.blend != SessionRecord.blend:
-        header.append(("blend", repr(float(record.blend))))
+    header += setting_lines(record.settings, always=True)
+    header.append(("unit", record.unit))
+    header += setting_lines(record.settings, always=False)
     # Every header entry stays on its line, whatever it says.
-    lines = [" ".join(f"# {key}: {text}".splitlines()).rstrip() + "\n" for key, text in header]
-    lines += [f"# {key}: {text}\n" if key else f"# {text}\n" for key, text in record.unknown]
+    entries = [" ".join(f"# {key}: {text}".splitlines()).rstrip() for key, text in header]
+    entries += [f"# {key}: {text}" if key else f"# {text}" for key, text in record.unknown]
+    lines = [header_line(entry) for entry in entries]
     lines += table_lines(record.landmarks)
     write_atomically(path, "".join(lines))
 
@@ -153,8 +133,8 @@ def read_session(path: str | Path) -> SessionRecord:
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder, "femur.pinwarp.csv")
-    ...     write_session(path, SessionRecord(warping_penalty=0.0042))
-    ...     read_session(path).warping_penalty
+    ...     write_session(path, SessionRecord(settings=WarpSettings(0.0042)))
+    ...     read_session(path).settings.penalty
     0.0042
     """
     lines = lines_of(read_text(path, "session"))

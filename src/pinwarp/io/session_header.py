@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import math
 import os
 import re
 from collections.abc import Sequence
@@ -11,11 +10,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from pinwarp.core.components import Components
 from pinwarp.core.errors import FileFormatError, NewerFileError
 from pinwarp.core.mirror import AXES
-from pinwarp.io.csv_cells import YES_NO, as_sentence, number_of, shortened
+from pinwarp.core.settings import WarpSettings
+from pinwarp.io.csv_cells import as_sentence, number_of, shortened
+from pinwarp.io.csv_text import plain_line
 from pinwarp.io.mesh_reference import MeshReference, mesh_reference
+from pinwarp.io.setting_keys import SETTING_KEYS
 
 VERSION = 1
 CORRECT = "Correct it in a text editor, or use an earlier copy of the file."
@@ -27,16 +28,13 @@ _FIELDS = {
     "destination_mirrored": "destination_mirrored",
     "source_scaled": "source_scaled",
     "destination_scaled": "destination_scaled",
-    "warping_penalty": "warping_penalty",
-    "penalty_convention": "penalty_convention",
     "unit": "unit",
-    "treat_as_planar": "planar",
-    "components": "components",
-    "blend": "blend",
 }
 """The field of a session record, or of one of its meshes, that each known key fills."""
-_CONVENTIONS = ("regularising", "opynsim")
-_COMPONENTS = tuple(part.value for part in Components)
+
+
+# To a spreadsheet, what follows a separator is a cell of its own.
+_HAS_FORMULA = re.compile(r"[,;\t][\s\"']*[=+\-@＝＋－＠]")
 
 
 class HeaderLine(NamedTuple):
@@ -58,6 +56,17 @@ def is_header(line: str) -> bool:
     text = line.strip().lstrip('"')
     # A spreadsheet fills blank lines with separators.
     return text.startswith("#") or not text.strip(',;\t "')
+
+
+def header_line(entry: str) -> str:
+    r"""Return a line of the header; one that holds what a spreadsheet would run is in quotes.
+
+    Examples
+    --------
+    >>> header_line("# unit: mm"), header_line("# unit: mm,=1+1")
+    ('# unit: mm\n', '"# unit: mm,=1+1"\n')
+    """
+    return plain_line([entry]) if _HAS_FORMULA.search(entry) else f"{entry}\n"
 
 
 def read_header(path: str | Path, lines: Sequence[str], separator: str) -> list[HeaderLine]:
@@ -93,7 +102,8 @@ def read_header(path: str | Path, lines: Sequence[str], separator: str) -> list[
     mangled = first.endswith(separator) or first.startswith('"')
     found = []
     for number, line in enumerate(lines, 1):
-        text = _header_text(line.rstrip("\r\n"), separator, mangled)
+        line = line.rstrip("\r\n")
+        text = _header_text(line, separator, mangled or line.startswith('"#'))
         if text.startswith("#"):
             entry = text.removeprefix("#").strip()
             key, colon, value = entry.partition(":")
@@ -161,16 +171,22 @@ def read_values(
     """
     folder = Path(os.path.abspath(path)).parent
     known: dict[str, Any] = {}
+    chosen: dict[str, Any] = {}
+    given: set[str] = set()
     unknown, lines = [], {}
     for line, key, text in header:
         lines[key] = line
-        if key not in _FIELDS:
+        if key not in _FIELDS and key not in SETTING_KEYS:
             unknown.append((key, text))
             continue
         try:
-            if _FIELDS[key] in known:
+            if key in given:
                 raise ValueError(f"{key} is given twice")
-            known[_FIELDS[key]] = _value(key, text, folder)
+            if key in SETTING_KEYS:
+                chosen[SETTING_KEYS[key].field] = SETTING_KEYS[key].read(text)
+            else:
+                known[_FIELDS[key]] = _value(key, text, folder)
+            given.add(key)
         except ValueError as error:
             raise FileFormatError(path, f"{as_sentence(str(error))} {CORRECT}", line) from None
     for side in ("source", "destination"):
@@ -186,10 +202,12 @@ def read_values(
                     lines[f"{side}_{how}"],
                 )
             known[f"{side}_mesh"] = replace(mesh, **{how: value})
+    if chosen:
+        known["settings"] = WarpSettings(**chosen)
     return known, tuple(unknown)
 
 
-def _value(key: str, text: str, folder: Path) -> MeshReference | float | bool | str:
+def _value(key: str, text: str, folder: Path) -> MeshReference | float | str:
     """Read the text of one line, or raise a ValueError with the reason."""
     match key:
         case "source_mesh" | "destination_mesh":
@@ -198,22 +216,6 @@ def _value(key: str, text: str, folder: Path) -> MeshReference | float | bool | 
             return _axes(key, text)
         case "source_scaled" | "destination_scaled":
             return _factor(key, text)
-        case "warping_penalty":
-            return penalty_of(text)
-        case "treat_as_planar":
-            if text.lower() not in YES_NO:
-                raise ValueError(f"{key} is {shortened(text)} and neither yes nor no")
-            return YES_NO[text.lower()]
-        case "penalty_convention" if text not in _CONVENTIONS:
-            raise ValueError(
-                f"the convention {shortened(text)} is none of {', '.join(_CONVENTIONS)}"
-            )
-        case "components" if text not in _COMPONENTS:
-            raise ValueError(
-                f"the components {shortened(text)} are none of {', '.join(_COMPONENTS)}"
-            )
-        case "blend":
-            return _blend(text)
         case _:
             return text
 
@@ -229,32 +231,4 @@ def _factor(key: str, text: str) -> float:
     value = number_of(text, ",")
     if not value > 0:
         raise ValueError(f"{key} is {text}, and only what is above 0 scales a mesh")
-    return value
-
-
-def _blend(text: str) -> float:
-    value = number_of(text, ",")
-    if not 0 <= value <= 1:
-        raise ValueError(f"the blend {text} is not from 0 to 1")
-    return value
-
-
-def penalty_of(text: str, separator: str = ",") -> float:
-    """Read a warping penalty; ``inf`` is the affine fit.
-
-    Raises
-    ------
-    ValueError
-        With the reason as its message.
-
-    Examples
-    --------
-    >>> penalty_of("0.0042"), penalty_of("inf"), penalty_of("0,5", ";")
-    (0.0042, inf, 0.5)
-    """
-    if text.lower() == "inf":
-        return math.inf
-    value = number_of(text, separator)
-    if value < 0:
-        raise ValueError(f"the warping penalty {text} is negative")
     return value

@@ -11,7 +11,6 @@ from pinwarp.io.csv_cells import (
     YES_NO,
     as_sentence,
     coordinates_text,
-    formula_quoted,
     formula_unquoted,
     position_of,
     shortened,
@@ -40,18 +39,18 @@ def table_lines(landmarks: Iterable[Landmark]) -> list[str]:
     extra = [c for landmark in rows for c, _ in landmark.extra if c not in _KNOWN]
     extra = list(dict.fromkeys(extra))
     locks = [_LOCKED] if any(landmark.locked for landmark in rows) else []
-    lines = [csv_line([*_COLUMNS, *locks, *map(formula_quoted, extra)])]
+    lines = [csv_line([*_COLUMNS, *locks, *extra])]
     for landmark in rows:
         others = dict(landmark.extra)
         cells = [
-            formula_quoted(landmark.name),
+            landmark.name,
             landmark.role.value,
             "1" if landmark.enabled else "0",
             *coordinates_text(landmark.source),
             *coordinates_text(landmark.destination),
-            formula_quoted(landmark.note),
+            landmark.note,
             *["1" if landmark.locked else "0" for _ in locks],
-            *[formula_quoted(others.get(column, "")) for column in extra],
+            *[others.get(column, "") for column in extra],
         ]
         lines.append(csv_line(cells))
     return lines

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError
 from pinwarp.io.atomic import write_atomically
-from pinwarp.io.csv_cells import formula_quoted, formula_unquoted
+from pinwarp.io.csv_cells import formula_unquoted, numeral
 from pinwarp.io.csv_text import csv_line, lines_of, read_text, rows_of
 
 SummaryRow = Mapping[str, str]
@@ -54,13 +54,8 @@ def write_summary(path: str | Path, rows: Iterable[SummaryRow]) -> None:
     """
     lines = [csv_line(COLUMNS)]
     for row in rows:
-        cells = (row.get(column, "") for column in COLUMNS)
-        lines.append(
-            csv_line(
-                cell if column in NUMBERS else formula_quoted(" ".join(cell.split()))
-                for column, cell in zip(COLUMNS, cells, strict=True)
-            )
-        )
+        cells = ((column, " ".join(row.get(column, "").split())) for column in COLUMNS)
+        lines.append(csv_line(numeral(x) if column in NUMBERS else x for column, x in cells))
     write_atomically(path, "".join(lines))
 
 

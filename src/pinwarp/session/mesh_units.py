@@ -116,11 +116,11 @@ def scale_side(session: Session, side: Side, factor: float) -> Session:
         raise LandmarkError(f"There is no {side.value} mesh to scale: open one first.")
     whole = float(file.scaled * factor)
     mesh = file.mesh.with_vertices(factor * file.mesh.vertices)
-    penalty = session.warping_penalty * (factor if side is Side.SOURCE else 1)
+    penalty = session.settings.penalty * (factor if side is Side.SOURCE else 1)
     session = replace(
         session.with_mesh(side, replace(file, mesh=mesh, scaled=whole)),
         landmarks=scaled(session.landmarks, factor, side),
-        warping_penalty=penalty,
+        settings=replace(session.settings, penalty=penalty),
     )
     if _suits(mesh, session.unit):
         return session

@@ -1,12 +1,16 @@
-"""New names for landmarks, many at once, and how several of them are spoken of."""
+"""New names for landmarks, many at once, how they sort and how several are spoken of."""
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Iterable, Sequence
-from functools import partial
 
 from pinwarp.core.errors import LandmarkError
+from pinwarp.core.words import counted
+
+NAME_PATTERN = "landmark_{n}"
+PASSENGER_PATTERN = "passenger_{n}"
 
 _FIELD = re.compile(r"\{([^{}]*)\}")
 _AUTOMATIC = re.compile(r"(landmark|passenger)_\d+")
@@ -82,7 +86,7 @@ def names_by_pattern(names: Sequence[str], pattern: str, first: int = 1) -> dict
     if set("{}") & set(_FIELD.sub("", pattern)):
         raise LandmarkError("A brace is open: use {name}, {n} or {n:02}.")
     return {
-        name: _FIELD.sub(partial(_filled, name, number), pattern).strip()
+        name: _FIELD.sub(functools.partial(_filled, name, number), pattern).strip()
         for number, name in enumerate(names, first)
     }
 
@@ -116,4 +120,17 @@ def in_words(names: Iterable[str]) -> str:
     ('fovea', '2 landmarks')
     """
     names = list(names)
-    return names[0] if len(names) == 1 else f"{len(names)} landmarks"
+    return names[0] if len(names) == 1 else counted(len(names), "landmark")
+
+
+@functools.lru_cache(maxsize=4096)
+def natural(text: str) -> tuple[tuple[int, int, str], ...]:
+    """Return a key that sorts numbers in names as numbers.
+
+    Examples
+    --------
+    >>> sorted(["p10", "p9", "P1"], key=natural)
+    ['P1', 'p9', 'p10']
+    """
+    parts = re.findall(r"[0-9]+|[^0-9]+", text.casefold())
+    return tuple((0, int(p), "") if p.isascii() and p.isdigit() else (1, 0, p) for p in parts)

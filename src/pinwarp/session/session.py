@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from pinwarp.core.components import Components
-from pinwarp.core.landmarks import Landmark, Side, pairs_of
+from pinwarp.core.landmarks import Landmark, Role, Side, pairs_of
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.mirror import mirrored_mesh
-from pinwarp.core.spline import PenaltyConvention
+from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
 from pinwarp.io.meshes import MeshFile
 from pinwarp.io.session_file import MeshReference, SessionRecord
 
@@ -24,15 +23,8 @@ class Session:
         loses nothing), or None.
     landmarks
         In the order of the table; names are unique.
-    warping_penalty
-        A length in mesh units; infinity is the affine fit.
-    convention
-        The equation that the penalty enters.
-    planar
-        Whether nearly planar landmarks are treated as planar.
-    components, blend
-        What of the warp is applied, to what is shown and to what is exported; see
-        :func:`~pinwarp.core.components.applied`.
+    settings
+        How the warp is solved and applied.
     unit
         The unit of the meshes, for display.
     unknown
@@ -49,11 +41,7 @@ class Session:
     source: MeshFile | MeshReference | None = None
     destination: MeshFile | MeshReference | None = None
     landmarks: tuple[Landmark, ...] = ()
-    warping_penalty: float = 0.0
-    convention: PenaltyConvention = PenaltyConvention.REGULARISING
-    planar: bool = False
-    components: Components = Components.FULL
-    blend: float = 1.0
+    settings: WarpSettings = USUAL_SETTINGS
     unit: str = "mm"
     unknown: tuple[tuple[str, str], ...] = ()
 
@@ -70,6 +58,15 @@ class Session:
         """Return the session with the mesh of one side replaced."""
         return (
             replace(self, source=file) if side is Side.SOURCE else replace(self, destination=file)
+        )
+
+    @property
+    def passengers(self) -> tuple[Landmark, ...]:
+        """The passengers that the warp carries, in order: those on the source."""
+        return tuple(
+            landmark
+            for landmark in self.landmarks
+            if landmark.role is Role.PASSENGER and landmark.source is not None
         )
 
     @property
@@ -96,12 +93,8 @@ def to_record(session: Session) -> SessionRecord:
         landmarks=session.landmarks,
         source_mesh=_reference(session.source),
         destination_mesh=_reference(session.destination),
-        warping_penalty=session.warping_penalty,
-        penalty_convention=session.convention.value,
+        settings=session.settings,
         unit=session.unit,
-        planar=session.planar,
-        components=session.components.value,
-        blend=session.blend,
         unknown=session.unknown,
     )
 
@@ -116,11 +109,7 @@ def from_record(
         source=_found(source, record.source_mesh),
         destination=_found(destination, record.destination_mesh),
         landmarks=record.landmarks,
-        warping_penalty=record.warping_penalty,
-        convention=PenaltyConvention(record.penalty_convention),
-        planar=record.planar,
-        components=Components(record.components),
-        blend=record.blend,
+        settings=record.settings,
         unit=record.unit,
         unknown=record.unknown,
     )

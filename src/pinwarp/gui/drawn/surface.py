@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import weakref
 from collections.abc import Sequence
 
 import numpy as np
@@ -38,7 +39,9 @@ class Surface:
     """
 
     def __init__(self, mesh: Mesh) -> None:
-        self.mesh = mesh
+        # Not the mesh itself: who remembers a surface for as long as its mesh lives would keep both
+        # for ever.
+        self._mesh = weakref.ref(mesh)
         self.polydata = shaded(mesh.vertices, mesh.faces)
         self.diagonal = mesh.diagonal
         self.stand_in = _stand_in(self.polydata) if len(mesh.faces) > LARGE else None
@@ -46,6 +49,11 @@ class Surface:
         self._locator = vtkStaticCellLocator()
         self._locator.SetDataSet(self.polydata)
         self._locator.BuildLocator()
+
+    @property
+    def mesh(self) -> Mesh | None:
+        """The mesh, as long as somebody else holds it."""
+        return self._mesh()
 
     def first_hit(self, start: NDArray, end: NDArray) -> NDArray | None:
         """Return where a ray first meets the surface, None where it misses."""

@@ -13,6 +13,7 @@ from qtpy.QtGui import QColor
 from pinwarp.core.components import Components, as_drawn
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
+from pinwarp.core.live import drawable
 from pinwarp.gui.drawn.surface import shading_normals, triangles
 from pinwarp.gui.exporting.offscreen import Offscreen, Pixels
 from pinwarp.gui.scene.drawables import FoldedSurface, GridLines, Overlay
@@ -20,8 +21,8 @@ from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.style import theme
 from pinwarp.gui.tasks.stepped_job import Steps
 from pinwarp.gui.views.canvas import Canvas
-from pinwarp.session.outputs.exports import solved
 from pinwarp.session.session import Session
+from pinwarp.session.warp.solved import solved
 
 Vertices = NDArray[np.float32]
 
@@ -95,15 +96,13 @@ def ends_of(session: Session) -> Ends:
     mesh = session.mesh(Side.SOURCE)
     if mesh is None:
         raise PinwarpError("There is no source mesh to warp: open one first.")
-    if session.components is Components.RIGID:
+    if session.settings.components is Components.RIGID:
         raise PinwarpError(
             "Only the rigid fit is applied, which is where the blend begins: nothing would move. "
             "Choose another part in Warp > Apply."
         )
-    warp, part = solved(session), as_drawn(session.components)
-    aligned, warped = (
-        warp.applied(part, blend).evaluate(mesh.vertices).astype(np.float32) for blend in (0, 1)
-    )
+    warp, part = solved(session), as_drawn(session.settings.components)
+    aligned, warped = (drawable(warp.part(part, blend).evaluate(mesh.vertices)) for blend in (0, 1))
     return Ends(aligned, warped)
 
 

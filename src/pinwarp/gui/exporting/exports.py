@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from pinwarp.core.landmarks import Landmark, Side
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.style.lengths import format_length
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, MESH_FILES, FileTasks, Progress
@@ -17,7 +19,6 @@ from pinwarp.io.meshes import NORMALS_SUFFIXES, SCALARS_SUFFIXES, write_mesh
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.mesh_data import warped_mesh_data
 from pinwarp.session.outputs.exports import (
-    applied_in_words,
     session_coefficients,
     warped_landmarks,
     warped_mesh,
@@ -25,9 +26,11 @@ from pinwarp.session.outputs.exports import (
 )
 from pinwarp.session.outputs.script import script_of
 from pinwarp.session.session import Session
+from pinwarp.session.warp.component_words import applied_in_words
+from pinwarp.session.warp.solved import solved
 
 
-class Exports:
+class Exports(Capability):
     """Asks for a file and writes.
 
     Parameters
@@ -41,6 +44,78 @@ class Exports:
     def __init__(self, editor: Editor, tasks: FileTasks[Dialogs]) -> None:
         self._editor = editor
         self._tasks = tasks
+        self.actions = (
+            *self._of_landmarks(),
+            Action(
+                "export_mesh",
+                "&Export Warped Mesh…",
+                self.ask_and_export_mesh,
+                at="File.43 tools.15",
+                keys="Ctrl+E",
+                icon="export",
+                tip="Save the warped source mesh",
+                possible=self._has_warped_mesh,
+            ),
+            Action(
+                "export_coefficients",
+                "Coe&fficients…",
+                self.export_coefficients,
+                at="export.31",
+                tip="Of the warp, as JSON or .npz",
+                possible=self._has_pairs,
+            ),
+            Action(
+                "export_script",
+                "Scr&ipt…",
+                self.export_script,
+                at="export.32",
+                tip="Python that warps the mesh again",
+                possible=self._has_warped_mesh,
+            ),
+        )
+
+    def _of_landmarks(self) -> tuple[Action, ...]:
+        return (
+            Action(
+                "export_source",
+                "&Source Landmarks…",
+                lambda: self.export_landmarks(Side.SOURCE),
+                at="export.21",
+            ),
+            Action(
+                "export_destination",
+                "&Destination Landmarks…",
+                lambda: self.export_landmarks(Side.DESTINATION),
+                at="export.22",
+            ),
+            Action(
+                "export_pairs",
+                "&Landmark Pairs…",
+                lambda: self.export_landmarks(None),
+                at="export.23",
+            ),
+            Action(
+                "export_warped",
+                "&Warped Landmarks…",
+                lambda: self.export_warped(passengers=False),
+                at="export.24",
+                tip="Where the warp carries the pairs",
+                possible=self._has_pairs,
+            ),
+            Action(
+                "export_passengers",
+                "Warped &Passengers…",
+                lambda: self.export_warped(passengers=True),
+                at="export.25",
+                tip="Where the warp carries them",
+            ),
+        )
+
+    def _has_pairs(self) -> bool:
+        return bool(self._editor.session.pairs)
+
+    def _has_warped_mesh(self) -> bool:
+        return self._has_pairs() and self._editor.session.mesh(Side.SOURCE) is not None
 
     def export_landmarks(self, side: Side | None) -> None:
         """Ask for a file and write the landmarks of one side, or the pairs."""
@@ -53,14 +128,21 @@ class Exports:
 
     def export_warped(self, *, passengers: bool) -> None:
         """Ask for a file and write where the warp carries the passengers, or the pairs' source."""
+        session = self._editor.committed
         what = "passengers" if passengers else "landmarks"
+        if passengers and not session.passengers:
+            self._tasks.dialogs.tell_error(
+                "Cannot export passengers",
+                "There is no passenger: Ctrl+click on the source adds one.",
+            )
+            return
         proposal = self._tasks.folder() / f"{what}_warped.landmarks.csv"
         path = self._tasks.dialogs.ask_save(f"Export the warped {what}", LANDMARK_FILES, proposal)
         if path is None:
             return
         carried = warped_passengers if passengers else warped_landmarks
-        session = self._editor.committed
-        self._write(path, lambda: carried(session), Side.DESTINATION, applied_in_words(session))
+        applied = applied_in_words(session.settings)
+        self._write(path, lambda: carried(session), Side.DESTINATION, applied)
 
     def _write(
         self,
@@ -112,8 +194,8 @@ class Exports:
 
     def _say_exported(self, path: Path, session: Session) -> None:
         pairs = len(session.pairs)
-        penalty = f"penalty {format_length(session.warping_penalty, session.unit, 6)}"
-        what = applied_in_words(session)
+        penalty = f"penalty {format_length(session.settings.penalty, session.unit, 6)}"
+        what = applied_in_words(session.settings)
         self._tasks.said.emit(f"Exported {path.name}: {what} ({pairs} pairs, {penalty})")
 
     def ask_and_export_mesh(self) -> None:
@@ -131,11 +213,11 @@ class Exports:
 
         def write(progress: Progress) -> None:
             progress(0.05, "warping")
-            mesh, data = warped_mesh(session), NO_DATA
+            warp = solved(session)
+            mesh, data = warped_mesh(warp), NO_DATA
             if suffix in NORMALS_SUFFIXES:
                 data = warped_mesh_data(
-                    session,
-                    mesh,
+                    warp,
                     scalars=suffix in SCALARS_SUFFIXES,
                     progress=lambda share, stage: progress(0.1 + 0.7 * share, stage),
                 )

@@ -5,21 +5,24 @@ from __future__ import annotations
 from pathlib import Path
 
 from pinwarp.core.errors import PinwarpError
+from pinwarp.core.words import counted
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.tasks.dialogs import Dialogs, Existing
 from pinwarp.gui.tasks.file_tasks import FileTasks, Progress
 from pinwarp.gui.tasks.jobs import Cancelled
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
 from pinwarp.io.meshes import MESH_SUFFIXES
 from pinwarp.session.editor import Editor
-from pinwarp.session.outputs.exports import applied_in_words
 from pinwarp.session.outputs.warp_files import FileWarper, WarpedFile, outputs_of, warp_each
+from pinwarp.session.warp.component_words import applied_in_words
 
 FILES = "Meshes and landmarks ({});;All files (*)".format(
     " ".join(f"*{suffix}" for suffix in (*MESH_SUFFIXES, *LANDMARK_SUFFIXES))
 )
 
 
-class FileWarping:
+class FileWarping(Capability):
     """Asks for files and a folder, warps them, and sums up.
 
     Parameters
@@ -33,6 +36,16 @@ class FileWarping:
     def __init__(self, editor: Editor, tasks: FileTasks[Dialogs]) -> None:
         self._editor = editor
         self._tasks = tasks
+        self.actions = (
+            Action(
+                "warp_files",
+                "&Warp Files…",
+                self.ask_and_warp,
+                at="File.45",
+                tip="Other meshes and landmarks, by the same warp",
+                possible=lambda: editor.session.pairs,
+            ),
+        )
 
     def ask_and_warp(self) -> None:
         """Ask which files are warped into which folder."""
@@ -44,7 +57,7 @@ class FileWarping:
         if folder is None:
             return
         try:
-            outputs = outputs_of(inputs, folder, kept=self._kept(), force=True)
+            outputs = outputs_of(inputs, folder, kept=self._kept())
         except PinwarpError as error:
             dialogs.tell_error("Cannot warp these files", str(error))
             return
@@ -83,27 +96,23 @@ class FileWarping:
             return done
 
         def arrived(done: list[WarpedFile]) -> None:
-            self._sum_up(done, len(pairs), folder, applied_in_words(session))
+            self._sum_up(done, len(pairs), folder, applied_in_words(session.settings))
 
         self._tasks.run("Warping files", warp, arrived)
 
     def _sum_up(self, done: list[WarpedFile], total: int, folder: Path, what: str) -> None:
         failed = sum(bool(file.error) for file in done)
         written = len(done) - failed
-        words = [f"{_files(written)} written to {folder}: {what}."]
+        words = [f"{counted(written, 'file')} written to {folder}: {what}."]
         if failed:
-            words.append(f"{_files(failed)} could not be warped.")
+            words.append(f"{counted(failed, 'file')} could not be warped.")
         if len(done) < total:
-            words.append(f"Cancelled before the other {_files(total - len(done))}.")
+            words.append(f"Cancelled before the other {counted(total - len(done), 'file')}.")
         details = "\n".join(line for file in done for line in _lines(file))
         self._tasks.said.emit(words[0])
         noted = any(file.notes for file in done)
         if failed or noted or len(done) < total or total > 1:
             self._tasks.dialogs.tell("Warped files", " ".join(words), details)
-
-
-def _files(count: int) -> str:
-    return f"{count} file" if count == 1 else f"{count} files"
 
 
 def _lines(file: WarpedFile) -> list[str]:

@@ -100,9 +100,8 @@ def picture_steps(order: PictureOrder, views: Mapping[Side, Canvas]) -> Steps:
         for copy in copies.values():
             copy.close()
     if not order.transparent:
-        painter = _below(image)
-        painter.fillRect(image.rect(), background(order.height))
-        painter.end()
+        with _below(image) as painter:
+            painter.fillRect(image.rect(), background(order.height))
     return image
 
 
@@ -115,11 +114,10 @@ def _below(image: QImage) -> QPainter:
 
 def _paint_below(image: QImage, place: QRect, tile: Tile) -> None:
     rows, columns = tile.pixels.shape[:2]
-    painter = _below(image)
-    painter.setClipRect(place)
     rendered = QImage(tile.pixels.data, columns, rows, 4 * columns, _FORMAT)
-    painter.drawImage(place.topLeft() + QPoint(tile.left, tile.top), rendered)
-    painter.end()
+    with _below(image) as painter:
+        painter.setClipRect(place)
+        painter.drawImage(place.topLeft() + QPoint(tile.left, tile.top), rendered)
 
 
 def background(height: int) -> QLinearGradient:
@@ -158,11 +156,10 @@ def _paint_landmarks(image: QImage, order: PictureOrder, view: Canvas, place: QR
     legend.show_content(scene.of(Legend))
     layer.give_way_to(legend)
     layer.show_scene(scene)
-    painter = QPainter(image)
-    painter.translate(place.topLeft())
-    painter.scale(scale, scale)
-    layer.render(painter, QPoint(), QRegion(), QWidget.RenderFlag.DrawChildren)
-    painter.end()
+    with QPainter(image) as painter:
+        painter.translate(place.topLeft())
+        painter.scale(scale, scale)
+        layer.render(painter, QPoint(), QRegion(), QWidget.RenderFlag.DrawChildren)
     layer.deleteLater()
 
 

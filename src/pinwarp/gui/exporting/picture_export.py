@@ -9,6 +9,8 @@ from qtpy.QtGui import QImage
 from qtpy.QtWidgets import QDialog, QWidget
 
 from pinwarp.core.landmarks import Side
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.exporting.animation import AnimationOrder, Ends, Motion, animation_steps, ends_of
 from pinwarp.gui.exporting.picture import PictureOrder, picture_steps
 from pinwarp.gui.exporting.picture_dialogs import AnimationDialog, PictureDialog
@@ -18,10 +20,10 @@ from pinwarp.gui.views.canvas import Canvas
 from pinwarp.io.animation import Frame, write_gif
 from pinwarp.io.atomic import atomic_path
 from pinwarp.session.editor import Editor
-from pinwarp.session.outputs.exports import applied_in_words
+from pinwarp.session.warp.component_words import applied_in_words
 
 
-class PictureExport:
+class PictureExport(Capability):
     """Asks what is wanted and where, and makes it.
 
     Parameters
@@ -50,6 +52,27 @@ class PictureExport:
         # What was chosen last is proposed again.
         self._picture = PictureOrder()
         self._animation = AnimationOrder()
+        self.actions = (
+            Action(
+                "export_picture",
+                "Pi&cture…",
+                self.ask_for_picture,
+                at="export.11",
+                tip="Of the views, at any size",
+                possible=self._has_mesh,
+            ),
+            Action(
+                "export_animation",
+                "&Animation…",
+                self.ask_for_animation,
+                at="export.12",
+                tip="Turned round, or warped and back",
+                possible=self._has_mesh,
+            ),
+        )
+
+    def _has_mesh(self) -> bool:
+        return any(self._editor.session.mesh(side) is not None for side in Side)
 
     def ask_for_picture(self) -> None:
         """Ask what a picture is to show."""
@@ -95,7 +118,7 @@ class PictureExport:
         session = self._editor.committed
         what = self._shown((Side.DESTINATION,))
         if order.motion is Motion.BLEND:
-            what = f", to {applied_in_words(session)}"
+            what = f", to {applied_in_words(session.settings)}"
 
         def rendered(frames: list[Frame]) -> None:
             def write(progress: Progress) -> None:
@@ -131,7 +154,7 @@ class PictureExport:
         """Say which part of the warp can be seen, where it can."""
         session = self._editor.committed
         seen = Side.DESTINATION in sides and self._editor.view.overlay and bool(session.pairs)
-        return f", {applied_in_words(session)}" if seen else ""
+        return f", {applied_in_words(session.settings)}" if seen else ""
 
 
 def _write_png(path: Path, image: QImage) -> None:

@@ -9,21 +9,21 @@ from pathlib import Path
 from qtpy.QtCore import QBuffer, QIODevice
 from qtpy.QtWidgets import QWidget
 
-from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
-from pinwarp.core.maps import MapKind
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import FileTasks, Progress
 from pinwarp.io.report import Picture, write_figures, write_report
 from pinwarp.session.editor import Editor
-from pinwarp.session.judging.quality import quality_of
+from pinwarp.session.judging.quality import Quality
 from pinwarp.session.judging.report import report_of
-from pinwarp.session.judging.survey import Surveyor
-from pinwarp.session.outputs.exports import applied_in_words
-from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+from pinwarp.session.warp.component_words import applied_in_words
+from pinwarp.session.warp.solved import solved
+from pinwarp.session.warp.solver import WarpResult
 
 
-class ReportExport:
+class ReportExport(Capability):
     """Asks for a file and writes the report.
 
     Parameters
@@ -36,6 +36,9 @@ class ReportExport:
         What is pictured, one per side.
     name
         Returns what the session is called.
+    known
+        Returns the last warp and what is known of its pairs, if anything: where they are those of
+        the session, they are not found again.
     """
 
     def __init__(
@@ -44,11 +47,24 @@ class ReportExport:
         tasks: FileTasks[Dialogs],
         views: Mapping[Side, QWidget],
         name: Callable[[], str],
+        known: Callable[[], tuple[WarpResult | None, Quality | None]],
     ) -> None:
         self._editor = editor
         self._tasks = tasks
         self._views = views
         self._name = name
+        self.actions = (
+            Action(
+                "export_report",
+                "Export &Report…",
+                self.ask_and_export,
+                at="File.44",
+                keys="Ctrl+Shift+E",
+                tip="Pictures, pairs and quality, as HTML",
+                possible=lambda: editor.session.pairs,
+            ),
+        )
+        self._known = known
 
     def ask_and_export(self) -> None:
         """Ask for a file and write the report there, with its numbers as CSV beside it."""
@@ -60,19 +76,18 @@ class ReportExport:
     def export(self, path: Path) -> None:
         """Write the report and its CSV."""
         session, title, now = self._editor.committed, self._name(), datetime.now()
+        result, quality = self._known()
         pictures = self._pictures()
         table = path.with_suffix(".csv")
 
         def write(progress: Progress) -> None:
-            progress(0.1, "judging the pairs")
-            result = WarpSolver().solve(WarpInputs.of(session))
-            quality = quality_of(result)
-            if quality is None:
-                raise PinwarpError(result.problem or "There is no pair yet to report on.")
-            progress(0.3, "measuring distances")
-            destination = session.mesh(Side.DESTINATION)
-            survey = Surveyor().survey(result, destination, MapKind.DISTANCE)
-            report = report_of(title, session, result, quality, survey, now)
+            report = report_of(
+                title,
+                solved(session, result),
+                now,
+                quality=quality,
+                told=lambda share, stage: progress(0.1 + 0.7 * share, stage),
+            )
             progress(0.8, "writing")
             write_report(path, report, pictures)
             write_figures(table, report.figures)
@@ -83,10 +98,10 @@ class ReportExport:
         self._tasks.run(f"Exporting {path.name}", write, arrived)
 
     def _pictures(self) -> list[Picture]:
-        session = self._editor.committed
+        applied = applied_in_words(self._editor.committed.settings)
         captions = {
             Side.SOURCE: "Source",
-            Side.DESTINATION: f"Destination, with {applied_in_words(session)} of the source",
+            Side.DESTINATION: f"Destination, with {applied} of the source",
         }
         return [Picture(captions[side], _png(view)) for side, view in self._views.items()]
 

@@ -6,8 +6,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from qtpy.QtWidgets import QMenu
+
 from pinwarp.core.errors import PinwarpError, words_of
 from pinwarp.core.landmarks import Side
+from pinwarp.gui.capability.action import Action, placed
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.files.file_dialogs import FileDialogs, OpenTwice
 from pinwarp.gui.files.recent_files import RecentFiles
 from pinwarp.gui.files.recovery import where_open
@@ -23,6 +27,7 @@ from pinwarp.io.file_names import SESSION_SUFFIX, is_backup, is_session, session
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
 from pinwarp.io.meshes import MESH_SUFFIXES, MeshFile
 from pinwarp.io.reading import hash_of
+from pinwarp.io.samples import sample_session
 from pinwarp.io.session_file import read_session
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
@@ -52,7 +57,7 @@ class Opening:
         return [path for path in (*files, *landmarks) if path is not None]
 
 
-class Documents:
+class Documents(Capability):
     """Carries files into the editor.
 
     Reading runs as a job; the session changes only once everything was read, so that a bad file
@@ -93,6 +98,75 @@ class Documents:
         self._meshes = meshes
         self._imports = imports
         self._window_with = window_with
+        self.recent_menu = QMenu("Open &Recent")
+        self.recent_menu.aboutToShow.connect(self._fill_recent)
+        self.actions = (
+            Action(
+                "open_source",
+                "Open S&ource Mesh…",
+                lambda: self.ask_and_open_mesh(Side.SOURCE),
+                at="File.11 tools.12",
+                keys="Ctrl+1",
+                icon="source",
+                tip="Open the mesh that is warped",
+            ),
+            Action(
+                "open_destination",
+                "Open &Destination Mesh…",
+                lambda: self.ask_and_open_mesh(Side.DESTINATION),
+                at="File.12 tools.13",
+                keys="Ctrl+2",
+                icon="destination",
+                tip="Open the mesh whose shape it takes",
+            ),
+            Action(
+                "open_session",
+                "&Open Session…",
+                self.ask_and_open_session,
+                at="File.21 tools.11",
+                keys="Ctrl+O",
+                icon="open",
+                tip="Open a saved session",
+            ),
+            placed(self.recent_menu.menuAction(), "File.22"),
+            Action(
+                "open_sample",
+                "Open Sample &Bones",
+                self.open_sample,
+                at="File.24",
+                tip="Two femurs to try things on",
+            ),
+        )
+
+    def shut_down(self) -> None:
+        """Take the menu of recent files away: it holds on to this."""
+        self.recent_menu.deleteLater()
+
+    @property
+    def recent(self) -> list[Path]:
+        """The sessions opened last that still exist, newest first."""
+        return self._recent.paths
+
+    def open_sample(self) -> None:
+        """Open the sample bones as a new session, asking about unsaved work first."""
+        if self._saving.may_lose_changes():
+            self.open_session(sample_session(), as_new=True)
+
+    def _fill_recent(self) -> None:
+        self.recent_menu.clear()
+        for path in self._recent.paths:
+            action = self.recent_menu.addAction(path.name.replace("&", "&&"))
+            action.setToolTip(str(path))
+            action.triggered.connect(lambda _checked=False, path=path: self._open_recent(path))
+        if self.recent_menu.isEmpty():
+            self.recent_menu.addAction("Nothing yet").setEnabled(False)
+        else:
+            self.recent_menu.addSeparator()
+            self.recent_menu.addAction("Clear").triggered.connect(self._recent.clear)
+
+    def _open_recent(self, path: Path) -> None:
+        if self._saving.may_lose_changes():
+            self.open_session(path)
 
     # Opening
 

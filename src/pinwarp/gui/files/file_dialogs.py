@@ -46,13 +46,21 @@ class _Missing(Enum):
 class FileDialogs(Dialogs):
     """The dialogs of opening, saving and recovering."""
 
-    def ask_unsaved(self, name: str) -> Answer:
-        """Ask what to do with unsaved changes."""
+    def ask_unsaved(self, name: str, reason: str = "") -> Answer:
+        """Ask what to do with unsaved changes.
+
+        Parameters
+        ----------
+        name
+            What the session is called.
+        reason
+            Why it counts as unsaved where nothing was changed.
+        """
         box = QMessageBox(self.window)
         box.setIcon(QMessageBox.Icon.Question)
         box.setWindowTitle("Unsaved changes")
-        box.setText(f"Save the changes to {name}?")
-        box.setInformativeText("Otherwise they are lost.")
+        box.setText(f"{reason} Save it again?" if reason else f"Save the changes to {name}?")
+        box.setInformativeText(f"Otherwise {'it is' if reason else 'they are'} lost.")
         kinds = QMessageBox.StandardButton
         box.setStandardButtons(kinds.Save | kinds.Discard | kinds.Cancel)
         box.setDefaultButton(kinds.Save)

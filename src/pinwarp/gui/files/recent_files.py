@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from qtpy.QtCore import QSettings
@@ -26,8 +27,9 @@ class RecentFiles:
     def paths(self) -> list[Path]:
         """The files that still exist, newest first."""
         stored = self._settings.value(_KEY, [])
-        names = [stored] if isinstance(stored, str) else list(stored or [])
-        return [path for path in map(Path, names) if path.is_file()]
+        names = stored if isinstance(stored, list) else [stored]
+        # Unlike Path.is_file, this never fails where a folder may not be looked into.
+        return [Path(name) for name in names if isinstance(name, str) and os.path.isfile(name)]
 
     def add(self, path: Path) -> None:
         """Put a file first."""

@@ -9,6 +9,8 @@ from pathlib import Path
 from qtpy.QtCore import QObject, Qt, Signal
 
 from pinwarp.core.errors import words_of
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.files.file_dialogs import FileDialogs
 from pinwarp.gui.files.lost_work_dialog import LostAnswer, moment_in_words
 from pinwarp.gui.files.saving import Saving
@@ -20,7 +22,7 @@ from pinwarp.session.keeping.recovery import LostWork, OtherWindow, find_lost_wo
 from pinwarp.session.session import Session
 
 
-class Recovery(QObject):
+class Recovery(QObject, Capability):
     """Keeps the work of one window safe and restores what others have lost.
 
     Parameters
@@ -55,6 +57,15 @@ class Recovery(QObject):
         self._meshes = meshes
         self._windows = state_folder / "windows" if state_folder is not None else None
         self._has_told = False
+        self.actions = (
+            Action(
+                "restore",
+                "Restore &Unsaved Work…",
+                self.offer_again,
+                at="File.23",
+                tip="Of windows that ended unexpectedly",
+            ),
+        )
         self._journal: Journal | None = None
         # The journal speaks from its own thread, or before the window is there.
         self._not_kept.connect(self._tell_once, Qt.ConnectionType.QueuedConnection)

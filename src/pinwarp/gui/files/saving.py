@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from pinwarp.core.errors import words_of
+from pinwarp.core.landmarks import Side
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.files.file_dialogs import Answer, FileDialogs, Overwrite
 from pinwarp.gui.files.recent_files import RecentFiles
 from pinwarp.gui.tasks.file_tasks import SESSION_FILES, FileTasks
 from pinwarp.io.backup import write_keeping_previous
 from pinwarp.io.file_names import SESSION_SUFFIX, is_session, session_name
+from pinwarp.io.meshes import MeshFile
 from pinwarp.io.reading import hash_of
 from pinwarp.io.session_file import write_session
 from pinwarp.session.editor import Editor
 from pinwarp.session.session import to_record
 
 
-class Saving:
+class Saving(Capability):
     """Writes the session where the user wants it.
 
     Parameters
@@ -33,12 +38,30 @@ class Saving:
         self._editor = editor
         self._tasks = tasks
         self._recent = recent
+        self.actions = (
+            Action(
+                "save",
+                "&Save Session",
+                self.save,
+                at="File.31 tools.14",
+                keys="Ctrl+S",
+                icon="save",
+                tip="Save the session",
+            ),
+            Action("save_as", "Save Session &As…", self.save_as, at="File.32", keys="Ctrl+Shift+S"),
+        )
 
     def may_lose_changes(self) -> bool:
-        """Ask about unsaved changes; False when the user would rather stay."""
+        """Ask about unsaved changes; False when the user would rather stay.
+
+        What was saved counts as unsaved once its file is gone.
+        """
+        gone = self._notice_lost_file()
         if not self._editor.is_dirty:
             return True
-        answer = self._tasks.dialogs.ask_unsaved(session_name(self._editor.path))
+        path = self._editor.path
+        reason = f"{path.name} is not in {path.parent} any more." if gone and path else ""
+        answer = self._tasks.dialogs.ask_unsaved(session_name(path), reason)
         if answer is Answer.SAVE:
             return self.save()
         return answer is Answer.DISCARD
@@ -83,13 +106,28 @@ class Saving:
             unkept.append(write_keeping_previous(path, lambda path: write_session(path, record)))
 
         if not self._tasks.write(write, path):
+            self._notice_lost_file()
             return False
         self._editor.mark_saved(path, hash_of(path))
         self._recent.add(path)
         problem = unkept[0]
-        self._tasks.said.emit(
-            f"Saved {path.name}"
-            if problem is None
-            else f"Saved {path.name}, but not its previous version: {words_of(problem)}"
-        )
+        notes = [f"Saved {path.name}"]
+        if problem is not None:
+            notes.append(f"but not its previous version: {words_of(problem)}")
+        gone = [file.path for file in self._meshes() if not os.path.exists(file.path)]
+        notes += [f"but its mesh {mesh.name} is not in {mesh.parent} any more" for mesh in gone]
+        self._tasks.said.emit(", ".join(notes))
+        return True
+
+    def _meshes(self) -> list[MeshFile]:
+        """Return the meshes that were read, the source first."""
+        files = map(self._editor.committed.mesh_file, Side)
+        return [file for file in files if isinstance(file, MeshFile)]
+
+    def _notice_lost_file(self) -> bool:
+        """Say whether the session's file is gone; the session is unsaved work then."""
+        path = self._editor.path
+        if path is None or os.path.exists(path):
+            return False
+        self._editor.mark_unsaved()
         return True

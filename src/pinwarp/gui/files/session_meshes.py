@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
+from pinwarp.core.live import check_drawable
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.names import look_alike_notes
 from pinwarp.gui.drawn.surface import Surface
 from pinwarp.gui.files.file_dialogs import FileDialogs
 from pinwarp.gui.tasks.file_tasks import FileTasks, Progress
@@ -54,9 +57,13 @@ class SessionMeshes:
         self._located: list[Path] = []
 
     def read(self, path: Path, progress: Progress) -> MeshFile:
-        """Read a mesh and make it ready to be drawn; to be run in a job."""
+        """Read a mesh and make it ready to be drawn; to be run in a job.
+
+        RangeError where it is too large or too small to be drawn.
+        """
         file = read_mesh(path, progress=lambda share, stage: progress(0.7 * share, stage))
         progress(0.75, "preparing to draw")
+        check_drawable(file.mesh.vertices)
         self._keep_surface(file.mesh, Surface(file.mesh))
         progress(1.0, "done")
         return file
@@ -85,7 +92,7 @@ class SessionMeshes:
         there = {side: mesh for side, mesh in references.items() if mesh is not None}
         opening = _Opening(record, folder, title, arrived, there)
         for side, reference in there.items():
-            if reference.path.is_file():
+            if os.path.isfile(reference.path):
                 opening.places[side] = reference.path
         self._find(opening)
 
@@ -160,7 +167,7 @@ class SessionMeshes:
         self._tasks.run(opening.title, read, arrived)
 
     def _report(self, opening: _Opening, found: dict[Side, MeshFile]) -> None:
-        """Say which meshes have moved or are not what they were."""
+        """Say which meshes have moved or are not what they were, and which names look alike."""
         changes, moved = [], []
         for side, file in found.items():
             reference = opening.references[side]
@@ -169,8 +176,9 @@ class SessionMeshes:
             is_same = not reference.sha256 or file.sha256 == reference.sha256
             if not is_same and side not in opening.accepted:
                 changes.append(_change(side, file, reference))
-        if moved:
-            self._tasks.said.emit("; ".join(moved))
+        alike = look_alike_notes(landmark.name for landmark in opening.record.landmarks)
+        if moved or alike:
+            self._tasks.said.emit("; ".join((*moved, *alike)))
         if changes:
             self._tasks.dialogs.tell(
                 "A mesh has changed" if len(changes) == 1 else "Both meshes have changed",

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from qtpy.QtGui import QAction
+from collections.abc import Callable
+
 from qtpy.QtWidgets import QPushButton
 
 from pinwarp.core.landmarks import Side
@@ -22,10 +23,10 @@ class FoldNote(QPushButton):
     editor
         Where a click selects the landmarks.
     focus
-        The action that looks at the selection.
+        Looks at the selection.
     """
 
-    def __init__(self, editor: Editor, focus: QAction) -> None:
+    def __init__(self, editor: Editor, focus: Callable[[], None]) -> None:
         super().__init__()
         self._editor = editor
         self._focus = focus
@@ -65,4 +66,4 @@ class FoldNote(QPushButton):
         names = self._names()
         if names:
             self._editor.select(*names, side=Side.DESTINATION)
-            self._focus.trigger()
+            self._focus()

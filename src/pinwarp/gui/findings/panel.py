@@ -32,6 +32,9 @@ _BOTH = (FindingKind.SWAPPED, FindingKind.INCONSISTENT)
 # Longer words than this are broken anywhere.
 _LONGEST_WORD = 24
 _SIGN = 16
+# So many rows are shown, and so many names to choose from in each.
+MOST_ROWS = 50
+MOST_CHOICES = 20
 _PRESSING = (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Space)
 
 
@@ -121,9 +124,11 @@ class FindingRow(QFrame):
         self.choice.clear()
         several = len(names) > 1
         self.disable.setMenu(self.choice if several else None)
-        choices = [(name.replace("&", "&&"), [name]) for name in names]
+        choices = [(name.replace("&", "&&"), [name]) for name in names[:MOST_CHOICES]]
         if kind in _BOTH:
             choices.append(("&Both", list(names)))
+        elif len(names) > 2:
+            choices.append((f"&All but {names[0].replace('&', '&&')}", list(names[1:])))
         for words, chosen in choices:
             action = self.choice.addAction(words)
             action.triggered.connect(
@@ -188,18 +193,17 @@ class FindingRow(QFrame):
     def paintEvent(self, event: QPaintEvent) -> None:
         """Show which one is selected, and where the keys go."""
         super().paintEvent(event)
-        painter = QPainter(self)
-        if self._current:
-            shade = self.palette().color(QPalette.ColorRole.Highlight)
-            shade.setAlphaF(0.16)
-            painter.fillRect(self.rect(), shade)
-        if self.hasFocus():
-            option = QStyleOptionFocusRect()
-            option.initFrom(self)
-            option.rect = self.rect().adjusted(1, 1, -1, -1)
-            element = QStyle.PrimitiveElement.PE_FrameFocusRect
-            self.style().drawPrimitive(element, option, painter, self)
-        painter.end()
+        with QPainter(self) as painter:
+            if self._current:
+                shade = self.palette().color(QPalette.ColorRole.Highlight)
+                shade.setAlphaF(0.16)
+                painter.fillRect(self.rect(), shade)
+            if self.hasFocus():
+                option = QStyleOptionFocusRect()
+                option.initFrom(self)
+                option.rect = self.rect().adjusted(1, 1, -1, -1)
+                element = QStyle.PrimitiveElement.PE_FrameFocusRect
+                self.style().drawPrimitive(element, option, painter, self)
 
 
 class FindingsPanel(QWidget):
@@ -225,6 +229,9 @@ class FindingsPanel(QWidget):
         self._column = QVBoxLayout(self._content)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(0)
+        self.more = QLabel()
+        self.more.setContentsMargins(6, 4, 4, 4)
+        self._column.addWidget(self.more)
         self.scroll = QScrollArea()
         self.scroll.setWidgetResizable(True)
         self.scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
@@ -243,7 +250,7 @@ class FindingsPanel(QWidget):
     @property
     def rows(self) -> list[FindingRow]:
         """The rows that are filled, from the top."""
-        return self._rows[: len(self._found)]
+        return self._rows[: min(len(self._found), MOST_ROWS)]
 
     def show_findings(self, found: Sequence[NamedFinding], mirror_axis: str = "") -> None:
         """Show these findings.
@@ -251,19 +258,23 @@ class FindingsPanel(QWidget):
         Parameters
         ----------
         found
-            The gravest first.
+            The gravest first; beyond the first 50 only their number is told.
         mirror_axis
             Across which axis the source can be mirrored, if it is asked for.
         """
         if (tuple(found), mirror_axis) == (self._found, self._axis):
             return
         self._found, self._axis = tuple(found), mirror_axis
-        while len(self._rows) < len(found):
+        shown = self._found[:MOST_ROWS]
+        while len(self._rows) < len(shown):
             self._add_row()
-        for row, one in zip(self._rows, found, strict=False):
+        for row, one in zip(self._rows, shown, strict=False):
             row.show_finding(one, mirror_axis)
         for i, row in enumerate(self._rows):
-            row.setVisible(i < len(found))
+            row.setVisible(i < len(shown))
+        left_out = len(found) - len(shown)
+        self.more.setText(f"and {left_out:,} more, which are less grave")
+        self.more.setVisible(left_out > 0)
         self.header.setText(heading(found))
         font = self.font()
         font.setBold(any(one.finding.is_grave for one in found))
@@ -274,7 +285,7 @@ class FindingsPanel(QWidget):
     def _add_row(self) -> None:
         row = FindingRow()
         self._rows.append(row)
-        self._column.addWidget(row)
+        self._column.insertWidget(len(self._rows) - 1, row)
         row.chosen.connect(lambda: self.chosen.emit(row.found))
         row.swap_requested.connect(lambda: self.swap_requested.emit(row.found))
         row.mirror_requested.connect(lambda: self.mirror_requested.emit(self._axis))
@@ -287,7 +298,9 @@ class FindingsPanel(QWidget):
             row.set_current(bool(concerned) and set(concerned) == set(names))
 
     def focus_row(self, number: int) -> None:
-        """Let the keys go to a finding."""
+        """Let the keys go to a finding, if it is one of those that are shown."""
+        if number >= len(self.rows):
+            return
         self.set_open(True)
         self._rows[number].setFocus()
         self.scroll.ensureWidgetVisible(self._rows[number], 0, 0)

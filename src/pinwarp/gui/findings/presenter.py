@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 
-from qtpy.QtGui import QAction
-
-from pinwarp.core.findings import FindingKind
-from pinwarp.core.landmarks import Role
+from pinwarp.core.findings import FindingKind, gravest_first
 from pinwarp.core.mirror import axis_to_mirror
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
+from pinwarp.gui.findings.fold_note import FoldNote
+from pinwarp.gui.findings.panel import FindingsPanel
 from pinwarp.gui.maps.presenter import MapPresenter
-from pinwarp.gui.placing.hand import LandmarkRequests
-from pinwarp.gui.table.model import LandmarkModel
-from pinwarp.gui.table.panel import LandmarkPanel
+from pinwarp.gui.placing.bone_edits import BoneEdits
+from pinwarp.gui.placing.hand import Hand
+from pinwarp.gui.table.presenter import TablePresenter
+from pinwarp.gui.views.controls import ViewControls
 from pinwarp.gui.warp.quality import QualityPresenter
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
@@ -24,7 +26,7 @@ from pinwarp.session.warp.pair_names import pair_names
 _TOLD_ELSEWHERE = (FindingKind.NEARLY_PLANAR, FindingKind.POLE)
 
 
-class FindingsPresenter:
+class FindingsPresenter(Capability):
     """Everything between the quality of the pairs and the landmark panel.
 
     Parameters
@@ -33,12 +35,16 @@ class FindingsPresenter:
         The truth.
     quality, maps
         Where the figures and the folds come from.
-    model, panel
-        The table and the list below it.
-    actions
-        The window's actions by key.
-    requests
+    table
+        The list stands below it.
+    hand
         Moves landmarks, unless they are locked.
+    bones
+        Mirrors the source.
+    views
+        Look at landmarks.
+    undo_key
+        Which key undoes a remedy.
     say
         Says a sentence in passing.
     """
@@ -48,30 +54,43 @@ class FindingsPresenter:
         editor: Editor,
         quality: QualityPresenter,
         maps: MapPresenter,
-        model: LandmarkModel,
-        panel: LandmarkPanel,
-        actions: Mapping[str, QAction],
-        requests: LandmarkRequests,
+        table: TablePresenter,
+        hand: Hand,
+        bones: BoneEdits,
+        views: ViewControls,
+        undo_key: str,
         say: Callable[[str], None],
     ) -> None:
         self._editor = editor
         self._source = quality
         self._maps = maps
-        self._model = model
-        self._panel = panel
-        self._actions = actions
-        self._requests = requests
+        self._table = table
+        self._hand = hand
+        self._bones = bones
+        self._views = views
+        self._undo_key = undo_key
         self._say = say
         self._found: tuple[NamedFinding, ...] = ()
         self._shown_for: object = None
-        panel.findings.chosen.connect(self._choose)
-        panel.findings.swap_requested.connect(self._swap)
-        panel.findings.mirror_requested.connect(self._mirror)
-        panel.findings.disable_requested.connect(self._disable)
-        actions["next_finding"].triggered.connect(lambda _checked=False: self.next())
-        actions["swap_destinations"].triggered.connect(
-            lambda _checked=False: requests.swap_destinations(editor.selection.names)
+        self._next = Action(
+            "next_finding",
+            "Next Pair to &Check",
+            self.next,
+            at="Place.14",
+            keys="Shift+N",
+            tip="The next one listed below the table",
+            possible=lambda: self._found,
         )
+        self.actions = (self._next,)
+        self.panel = FindingsPanel()
+        table.panel.put_below(self.panel, self.panel.set_room)
+        self.fold_note = FoldNote(editor, views.focus)
+        self.notes = (self.fold_note,)
+        self.panel.chosen.connect(self._choose)
+        self.panel.swap_requested.connect(self._swap)
+        self.panel.mirror_requested.connect(bones.mirror)
+        self.panel.disable_requested.connect(self._disable)
+        maps.survey_shown.connect(self.fold_note.show_survey)
         quality.quality_changed.connect(self._on_quality)
         maps.folds_changed.connect(self._on_folds)
         editor.session_changed.connect(self._on_session)
@@ -82,13 +101,14 @@ class FindingsPresenter:
         """Let go of the editor and the figures."""
         self._source.quality_changed.disconnect(self._on_quality)
         self._maps.folds_changed.disconnect(self._on_folds)
+        self._maps.survey_shown.disconnect(self.fold_note.show_survey)
         self._editor.session_changed.disconnect(self._on_session)
         self._editor.selection_changed.disconnect(self._on_selection)
 
     # What is shown
 
     def _on_quality(self, quality: Quality | None) -> None:
-        self._model.show_quality(quality)
+        self._table.model.show_quality(quality)
         self._show()
 
     def _on_folds(self, _folds: object) -> None:
@@ -103,43 +123,42 @@ class FindingsPresenter:
 
     def _show(self) -> None:
         session, quality, survey = self._editor.session, self._source.quality, self._maps.survey
-        key = (session.landmarks, session.unit, session.source, quality, survey)
+        # Not the survey itself: where its folds are the same, an older one would stay for ever.
+        folds = survey.findings if survey is not None else ()
+        judged = survey.result.inputs if survey is not None else None
+        places = (judged.source, judged.destination) if judged is not None else None
+        key = (session.landmarks, session.unit, session.source, quality, folds, places)
         if key == self._shown_for:
             return
         self._shown_for = key
         found = quality.findings_in(session) if quality is not None else ()
-        if survey is not None:
-            found += named_findings(survey.findings, survey.result.inputs, session)
-        # A stable sort: folds come behind what causes them, what is only isolated last.
-        found = tuple(sorted(found, key=lambda one: not one.finding.is_grave))
+        if judged is not None:
+            found += named_findings(folds, judged, session)
+        # Folds come behind what causes them, what is only isolated last.
+        found = gravest_first(found)
         self._found = tuple(one for one in found if one.finding.kind not in _TOLD_ELSEWHERE)
-        self._model.show_findings(self._found)
-        self._panel.findings.show_findings(self._found, self._mirror_axis(quality))
-        self._panel.findings.show_selection(self._editor.selection.names)
-        self._actions["next_finding"].setEnabled(bool(self._found))
+        self._table.model.show_findings(self._found)
+        self.panel.show_findings(self._found, self._mirror_axis(quality))
+        self.panel.show_selection(self._editor.selection.names)
+        self._next.renew()
 
     def _mirror_axis(self, quality: Quality | None) -> str:
         mirrored = any(one.finding.kind is FindingKind.MIRRORED for one in self._found)
         if quality is None or not mirrored:
             return ""
         axis = axis_to_mirror(quality.inputs.source, quality.inputs.destination)
-        return axis if self._actions[f"mirror_{axis}"].isEnabled() else ""
+        return axis if self._bones.can_mirror() else ""
 
     def _on_selection(self, _changed: object = None) -> None:
-        session, names = self._editor.session, self._editor.selection.names
-        self._panel.findings.show_selection(names)
-        chosen = [mark for name in names if (mark := session.landmark(name)) is not None]
-        self._actions["swap_destinations"].setEnabled(
-            len(chosen) == 2 and all(mark.is_complete and mark.role is Role.PAIR for mark in chosen)
-        )
+        self.panel.show_selection(self._editor.selection.names)
 
     # What is asked for
 
     def _choose(self, found: NamedFinding) -> None:
         """Select the landmarks of a finding and look at them."""
-        self._panel.reveal(found.names)
+        self._table.panel.reveal(found.names)
         self._editor.select(*found.names)
-        self._actions["focus"].trigger()
+        self._views.focus()
 
     def next(self) -> None:
         """Choose the finding after the one that is selected, and let the keys go to it."""
@@ -149,7 +168,7 @@ class FindingsPresenter:
         here = [i for i, one in enumerate(self._found) if set(one.names) == chosen]
         following = (here[0] + 1) % len(self._found) if here else 0
         self._choose(self._found[following])
-        self._panel.findings.focus_row(following)
+        self.panel.focus_row(following)
 
     def _is_current(self, found: NamedFinding) -> bool:
         """Whether the pairs are still those that were judged: a second click must not undo it."""
@@ -161,14 +180,11 @@ class FindingsPresenter:
 
     def _swap(self, found: NamedFinding) -> None:
         if self._is_current(found):
-            self._requests.swap_destinations(found.names)
-
-    def _mirror(self, axis: str) -> None:
-        self._actions[f"mirror_{axis}"].trigger()
+            self._hand.swap_destinations(found.names)
 
     def _disable(self, found: NamedFinding, names: Sequence[str]) -> None:
         if self._is_current(found):
             session = edits.set_enabled(self._editor.committed, names, False)
             self._editor.commit(session, f"Disable {in_words(names)}")
             takes = "takes" if len(names) == 1 else "take"
-            self._say(f"{in_words(names)} no longer {takes} part: Ctrl+Z undoes it.")
+            self._say(f"{in_words(names)} no longer {takes} part: {self._undo_key} undoes it.")

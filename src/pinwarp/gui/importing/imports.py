@@ -8,6 +8,8 @@ from pathlib import Path
 from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.surface_distance import SurfaceIndex
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.importing.import_dialogs import ImportDialogs
 from pinwarp.gui.style.lengths import distance_from_mesh
 from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, FileTasks, Progress
@@ -25,7 +27,7 @@ from pinwarp.session.importing.landmarks import (
 from pinwarp.session.mesh_units import unit_on
 
 
-class LandmarkImports:
+class LandmarkImports(Capability):
     """Reads landmark files, asks where there is something to ask, and brings them in.
 
     Parameters
@@ -42,6 +44,31 @@ class LandmarkImports:
         # While one file is asked about, the next ones wait: they may match what it brings.
         self._waiting: list[tuple[Arriving, bool]] = []
         self._is_deciding = False
+        self.actions = (
+            Action(
+                "import_source",
+                "Source Landmarks…",
+                lambda: self.ask(Side.SOURCE),
+                at="import.11",
+                keys="Ctrl+Shift+1",
+                tip="Import source landmarks from a file",
+            ),
+            Action(
+                "import_destination",
+                "Destination Landmarks…",
+                lambda: self.ask(Side.DESTINATION),
+                at="import.12",
+                keys="Ctrl+Shift+2",
+                tip="Import destination landmarks from a file",
+            ),
+            Action(
+                "import_pairs",
+                "Landmark Pairs…",
+                lambda: self.ask(None),
+                at="import.13",
+                tip="Import landmarks from a file with both sides",
+            ),
+        )
 
     def ask(self, side: Side | None) -> None:
         """Ask for a landmark file and import it; without a side it must hold pairs."""

@@ -37,20 +37,19 @@ class HistogramView(QWidget):
         """Paint bars, line and values."""
         if self._map is None or self._scale is None:
             return
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        line = self.fontMetrics().height()
-        area = QRectF(self.rect()).adjusted(_MARGIN, 4, -_MARGIN, -line - 8)
-        histograms = self._map.histograms
-        most = max(float(histogram.shares.max()) for histogram in histograms)
-        self._paint_bars(painter, area, histograms[0], most)
-        for other in histograms[1:]:
-            self._paint_line(painter, area, other, most)
-        ink = self.palette().color(QPalette.ColorRole.WindowText)
-        painter.setPen(QPen(ink, 1))
-        painter.drawLine(area.bottomLeft(), area.bottomRight())
-        self._paint_values(painter, area)
-        painter.end()
+        with QPainter(self) as painter:
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            line = self.fontMetrics().height()
+            area = QRectF(self.rect()).adjusted(_MARGIN, 4, -_MARGIN, -line - 8)
+            histograms = self._map.histograms
+            most = max(float(histogram.shares.max()) for histogram in histograms)
+            self._paint_bars(painter, area, histograms[0], most)
+            for other in histograms[1:]:
+                self._paint_line(painter, area, other, most)
+            ink = self.palette().color(QPalette.ColorRole.WindowText)
+            painter.setPen(QPen(ink, 1))
+            painter.drawLine(area.bottomLeft(), area.bottomRight())
+            self._paint_values(painter, area)
 
     def _paint_bars(
         self, painter: QPainter, area: QRectF, histogram: Histogram, most: float

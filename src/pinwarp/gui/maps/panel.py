@@ -27,8 +27,8 @@ from pinwarp.gui.maps.histogram import HistogramView
 from pinwarp.gui.maps.words import MEANINGS, TITLES, figure, note_of
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.colour_scale import ColourScale
-from pinwarp.session.editor import ViewState
 from pinwarp.session.judging.survey import Survey
+from pinwarp.session.view import ViewState
 
 _ROWS = (
     ("Mean", "mean"),
@@ -45,21 +45,24 @@ class MapPanel(QWidget):
     ----------
     suggest
         The action that places the next landmark where it helps most.
+    next_key, accept_key
+        Which keys show the next map, and accept a ghost.
     """
 
     map_requested = Signal(object)
     range_requested = Signal(object)
     relative_requested = Signal(bool)
 
-    def __init__(self, suggest: QAction) -> None:
+    def __init__(self, suggest: QAction, next_key: str, accept_key: str) -> None:
         super().__init__()
         self._suggest = suggest
+        self._accept_key = accept_key
         self._shown_range: Range = (0.0, 1.0)
         self.choice = QComboBox()
         self.choice.setAccessibleName("Map")
         for kind in (None, *MapKind):
             self.choice.addItem("No map" if kind is None else TITLES[kind], kind)
-        self.choice.setToolTip("What the warped source is coloured by (M shows the next)")
+        self.choice.setToolTip(f"What the warped source is coloured by ({next_key} shows the next)")
         self.meaning = _words()
         self.note = _words()
         self.histogram = HistogramView()
@@ -183,7 +186,7 @@ class MapPanel(QWidget):
                 f"The next landmark helps most where the star stands on the source: {known}"
                 if taken is None
                 else f"{taken} stands where it helps most: {known} Place it on the destination "
-                "too: Space accepts its ghost."
+                f"too: {self._accept_key} accepts its ghost."
             )
             self.place_next.setEnabled(taken is None)
         self._show_range(found, view, unit, scale)

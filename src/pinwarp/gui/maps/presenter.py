@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import math
 import weakref
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
-from psygnal import Signal
 from qtpy.QtCore import QObject
-from qtpy.QtGui import QAction, QActionGroup
 from scipy.spatial import KDTree
 
 from pinwarp.core.landmarks import Side
 from pinwarp.core.maps import MapKind, Range, Suggestion
 from pinwarp.core.mesh import Mesh
-from pinwarp.gui.findings.fold_note import FoldNote
+from pinwarp.gui.capability.action import Action, one_of
+from pinwarp.gui.capability.capability import Capability, Panel
 from pinwarp.gui.maps.panel import MapPanel
 from pinwarp.gui.maps.words import TITLES, note_of
+from pinwarp.gui.placing.ghosts import Ghosts
+from pinwarp.gui.placing.hand import Hand
 from pinwarp.gui.scene.drawables import (
     Colouring,
     Drawable,
@@ -33,14 +34,24 @@ from pinwarp.gui.style.colour_scale import ColourScale
 from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.gui.views.scenes import Scenes
 from pinwarp.gui.views.viewport import Viewport
-from pinwarp.gui.warp.warps import Presenter
-from pinwarp.session.editor import Editor, ViewState
+from pinwarp.gui.warp.warps import Warps
+from pinwarp.session.editor import Editor
 from pinwarp.session.judging.survey import Survey, Surveyor
 from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.session import Session
+from pinwarp.session.signals import isolated
+from pinwarp.session.view import ViewState
 from pinwarp.session.warp.solver import WarpResult
 
 MAP_ACTIONS = {kind: f"map_{kind.name.lower() if kind else 'none'}" for kind in (None, *MapKind)}
+_ACTIONS = {
+    None: ("&No Map", "The warped source in one colour", 11),
+    MapKind.DISTANCE: ("&Distance to the Destination", "Where it misses", 21),
+    MapKind.VOLUME: ("&Volume Change", "Where it swells and shrinks", 22),
+    MapKind.LARGEST_STRETCH: ("&Largest Stretch", "In the direction that grows most", 23),
+    MapKind.SMALLEST_STRETCH: ("&Smallest Stretch", "In the direction that grows least", 24),
+    MapKind.UNCERTAINTY: ("&Uncertainty", "Where landmarks are missing", 25),
+}
 # Nearer to a suggested place than this share of the bone, a landmark counts as placed there.
 THERE = 1e-3
 
@@ -63,50 +74,47 @@ class _Surveyed:
     folded: FoldedSurface | None
 
 
-class MapPresenter(QObject):
+class MapPresenter(Capability):
     """Everything between the surveys of the warp and what shows them.
 
     ``map_changed`` emits each survey, ``folds_changed`` the folds as findings whenever they are
-    others, ``refused`` why something was not done, in words for the user.
+    others, ``survey_shown`` what there is to say of the last one, ``refused`` why something was
+    not done, in words for the user.
 
     Parameters
     ----------
     editor
         The truth.
-    presenter
-        Where the warps come from, and who places landmarks.
+    warps, hand, ghosts
+        Where the warps come from, who places landmarks, and which.
     scenes
         Where it is shown.
     view
         The destination's: its legend is clicked.
-    panel
-        The figures.
-    actions
-        The window's actions by key.
     parent
         The window.
     """
 
-    map_changed = Signal(Survey)
-    folds_changed = Signal(tuple)
-    refused = Signal(str)
+    map_changed = isolated(Survey)
+    folds_changed = isolated(tuple)
+    survey_shown = isolated(object)
+    refused = isolated(str)
 
     def __init__(
         self,
         editor: Editor,
-        presenter: Presenter,
+        warps: Warps,
+        hand: Hand,
+        ghosts: Ghosts,
         scenes: Scenes,
         view: Viewport,
-        panel: MapPanel,
-        actions: Mapping[str, QAction],
         parent: QObject,
     ) -> None:
-        super().__init__(parent)
         self._editor = editor
-        self._presenter = presenter
+        self._warps = warps
+        self._hand = hand
+        self._ghosts = ghosts
         self._scenes = scenes
-        self._panel = panel
-        self._actions = actions
         self._surveyor = Surveyor()
         self._nearest: weakref.WeakKeyDictionary[Mesh, NDArray] = weakref.WeakKeyDictionary()
         self._surveys = LatestWins(self._survey)
@@ -115,31 +123,45 @@ class MapPresenter(QObject):
         self._resting: WarpResult | None = None
         self._surveyed: _Surveyed | None = None
         self._asked: _Request | None = None
-        self.fold_note = FoldNote(editor, actions["focus"])
+        suggest = Action(
+            "place_suggested",
+            "Place at &Suggested Place",
+            self.place_suggested,
+            at="Place.12",
+            keys="Shift+Space",
+            tip="Where the uncertainty map says that the next landmark helps most",
+        )
+        following = Action(
+            "map_next",
+            "Next &Map",
+            self._next_map,
+            at="maps.31",
+            keys="M",
+            tip="Colour the warped source by something else",
+        )
+        self.actions = (
+            *one_of(map(self._action_of, (None, *MapKind)), parent),
+            following,
+            suggest,
+        )
+        self.panel = MapPanel(suggest, following.keys, hand.accept_action.keys)
+        self.panels = (Panel("map", "Map", self.panel),)
         self._connect(view)
         self._on_view()
 
     def _connect(self, view: Viewport) -> None:
-        editor, panel = self._editor, self._panel
-        choices = QActionGroup(self)
-        for kind, key in MAP_ACTIONS.items():
-            choices.addAction(self._actions[key])
-            self._actions[key].triggered.connect(lambda _checked=False, k=kind: self.show_map(k))
-        self._actions["map_next"].triggered.connect(lambda _checked=False: self._next_map())
-        self._actions["place_suggested"].triggered.connect(
-            lambda _checked=False: self.place_suggested()
-        )
+        editor, panel = self._editor, self.panel
         view.map_legend.clicked.connect(self._on_legend)
         panel.map_requested.connect(self.show_map)
         panel.range_requested.connect(self._fix_range)
         panel.relative_requested.connect(lambda on: editor.look(map_relative=on))
-        self._presenter.result_changed.connect(self._on_result)
+        self._warps.result_changed.connect(self._on_result)
         editor.view_changed.connect(self._on_view)
         editor.session_changed.connect(self._on_session)
 
     def shut_down(self) -> None:
-        """Stop the worker and let go of presenter and editor."""
-        self._presenter.result_changed.disconnect(self._on_result)
+        """Stop the worker and let go of warps and editor."""
+        self._warps.result_changed.disconnect(self._on_result)
         self._editor.view_changed.disconnect(self._on_view)
         self._editor.session_changed.disconnect(self._on_session)
         self._surveys.shut_down()
@@ -155,17 +177,28 @@ class MapPresenter(QObject):
         return self._surveyed.survey if self._surveyed is not None else None
 
     @property
-    def opacity_key(self) -> str:
-        """Which opacity of the view state the overlay is drawn with now."""
+    def is_coloured(self) -> bool:
+        """Whether the overlay wears a map, or will in a moment."""
         found = self.survey.map if self.survey is not None else None
-        return "opacity" if found is None or self._editor.view.map is None else "map_opacity"
+        return found is not None and self._editor.view.map is not None
 
     # What the user asks for
 
+    def _action_of(self, kind: MapKind | None) -> Action:
+        text, tip, place = _ACTIONS[kind]
+        return Action(
+            MAP_ACTIONS[kind],
+            text,
+            lambda: self.show_map(kind),
+            checked=lambda: self._editor.view.map is kind,
+            at=f"maps.{place}",
+            tip=tip,
+        )
+
     def show_map(self, kind: MapKind | None) -> None:
         """Colour the warped source by something, or by nothing."""
-        shown = {} if kind is None else {"overlay": True}
-        self._editor.look(map=kind, **shown)
+        # What is hidden cannot be seen to be coloured.
+        self._editor.look(map=kind, overlay=kind is not None or self._editor.view.overlay)
 
     def _next_map(self) -> None:
         kinds = [None, *MapKind]
@@ -197,17 +230,17 @@ class MapPresenter(QObject):
         there = self._taken_by()
         if there is not None:
             self.refused.emit(
-                f"{there} is there already: place it on the destination too (Space accepts its "
-                "ghost)."
+                f"{there} is there already: place it on the destination too "
+                f"({self._hand.accept_action.keys} accepts its ghost)."
             )
             return
-        name = self._presenter.requests.target(Side.SOURCE)
+        name = self._ghosts.target(Side.SOURCE)
         waiting = session.landmark(name) if name is not None else None
         if waiting is not None and waiting.destination is not None:
             # It has its place in the anatomy: the suggested one is another.
             self.refused.emit(f"Place {name} on the source first: it lacks that side.")
             return
-        self._presenter.requests.place(Side.SOURCE, suggestion.position)
+        self._hand.place(Side.SOURCE, suggestion.position)
 
     def _suggestion(self) -> Suggestion | None:
         survey = self.survey
@@ -238,7 +271,6 @@ class MapPresenter(QObject):
             self._show_or_ask()
 
     def _on_view(self, _view: ViewState | None = None) -> None:
-        self._actions[MAP_ACTIONS[self._editor.view.map]].setChecked(True)
         self._show_or_ask()
 
     def _on_session(self, _session: Session) -> None:
@@ -307,10 +339,10 @@ class MapPresenter(QObject):
     def _show(self) -> None:
         """Show the last survey as the view state wants it."""
         session, scale = self._editor.session, self._scale()
-        self._panel.show_survey(
+        self.panel.show_survey(
             self.survey, self._editor.view, session.unit, scale, self._taken_by()
         )
-        self.fold_note.show_survey(self.survey)
+        self.survey_shown.emit(self.survey)
         self._scenes.renew()
 
     def drawables(self, side: Side) -> Iterator[Drawable]:

@@ -112,21 +112,20 @@ class PaintedLegend(QWidget):
         content = self.content
         if content is None:
             return
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        paper = QColor(theme.PAPER)
-        paper.setAlphaF(0.88)
-        painter.setPen(QPen(QColor(0, 0, 0, 40), 1))
-        painter.setBrush(paper)
-        plate = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
-        painter.drawRoundedRect(plate, 6, 6)
-        top = self._paint_title(painter, content)
-        bar = QRectF(PADDING + 1, top + TIP, BAR_WIDTH, self.height() - top - 2 * TIP - PADDING)
-        self._paint_bar(painter, content, bar)
-        self._paint_values(painter, content, bar)
-        if content.fixed:
-            _paint_lock(painter, QPointF(self.width() - PADDING - 6, bar.top() + 2))
-        painter.end()
+        with QPainter(self) as painter:
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            paper = QColor(theme.PAPER)
+            paper.setAlphaF(0.88)
+            painter.setPen(QPen(QColor(0, 0, 0, 40), 1))
+            painter.setBrush(paper)
+            plate = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
+            painter.drawRoundedRect(plate, 6, 6)
+            top = self._paint_title(painter, content)
+            bar = QRectF(PADDING + 1, top + TIP, BAR_WIDTH, self.height() - top - 2 * TIP - PADDING)
+            self._paint_bar(painter, content, bar)
+            self._paint_values(painter, content, bar)
+            if content.fixed:
+                _paint_lock(painter, QPointF(self.width() - PADDING - 6, bar.top() + 2))
 
     def _paint_title(self, painter: QPainter, content: Legend) -> float:
         top = float(PADDING)

@@ -6,6 +6,7 @@ look the same on every graphics driver. What lies behind the surface is painted 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -44,6 +45,8 @@ from pinwarp.gui.scene.projection import Projection
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.style import theme
 from pinwarp.session.warp.ghost import Ghost
+
+_OUT_OF_SIGHT = "The bone is out of sight.\nHome looks at both bones as a whole."
 
 
 class MarkerLayer(QWidget):
@@ -145,13 +148,19 @@ class MarkerLayer(QWidget):
         """Paint what the scene holds for this sheet."""
         self.painted_for = self._projection.view_key()
         self._from_right = set()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        for kind, paint in self._painters.items():
-            thing = self._scene.of(kind)
-            if thing is not None:
-                paint(painter, thing)
-        painter.end()
+        with QPainter(self) as painter:
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            for kind, paint in self._painters.items():
+                thing = self._scene.of(kind)
+                if thing is not None:
+                    paint(painter, thing)
+            if self.is_bone_lost and self._scene.of(Hint) is None:
+                self._paint_hint(painter, Hint(_OUT_OF_SIGHT))
+
+    @property
+    def is_bone_lost(self) -> bool:
+        """Whether there is a bone but nothing of it in the view."""
+        return self._scene.of(Caption) is not None and self._projection.is_bone_lost
 
     def _paint_caption(self, painter: QPainter, caption: Caption) -> None:
         font = QFont(self.font())
@@ -170,6 +179,8 @@ class MarkerLayer(QWidget):
 
     def _paint_scale_bar(self, painter: QPainter, bar: ScaleBar) -> None:
         length = self._projection.unit_per_pixel
+        if not 0 < length < math.inf:
+            return
         paint_scale_bar(painter, QRectF(self.rect()), length, bar.unit)
 
     def _paint_hint(self, painter: QPainter, hint: Hint) -> None:

@@ -37,39 +37,38 @@ def marker_pixmap(
     pixmap = QPixmap(round(width * ratio), round(width * ratio))
     pixmap.setDevicePixelRatio(ratio)
     pixmap.fill(Qt.GlobalColor.transparent)
-    painter = QPainter(pixmap)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    painter.setOpacity(FAINT if hidden else 1.0)
-    centre = QPointF(width / 2, width / 2)
-    if selected:
-        painter.setPen(QPen(QColor(theme.OUTLINE), 1.0))
-        painter.setBrush(QColor(theme.SELECTED_COLOUR))
-        painter.drawEllipse(centre, radius + HALO, radius + HALO)
-    colour = QColor(theme.STATE_COLOURS[state])
-    outline = QPen(QColor(theme.OUTLINE), 1.2)
-    match state:
-        case LandmarkState.SOURCE_ONLY | LandmarkState.DESTINATION_ONLY | LandmarkState.EMPTY:
-            painter.setPen(QPen(QColor(theme.OUTLINE), 5.0))
-            painter.setBrush(Qt.BrushStyle.NoBrush)
-            painter.drawEllipse(centre, radius, radius)
-            painter.setPen(QPen(colour, 2.8))
-            painter.drawEllipse(centre, radius, radius)
-        case LandmarkState.PASSENGER:
-            painter.setPen(outline)
-            painter.setBrush(QBrush(colour))
-            r = radius + 1
-            painter.drawPolygon(
-                QPolygonF([centre + QPointF(*d) for d in ((0, -r), (r, 0), (0, r), (-r, 0))])
-            )
-        case _:
-            painter.setPen(outline)
-            painter.setBrush(QBrush(colour))
-            painter.drawEllipse(centre, radius, radius)
-            if state is LandmarkState.DISABLED:
-                painter.setPen(QPen(QColor(theme.PAPER), 2))
-                bar = QPointF(radius / 2, -radius / 2)
-                painter.drawLine(centre - bar, centre + bar)
-    painter.end()
+    with QPainter(pixmap) as painter:
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setOpacity(FAINT if hidden else 1.0)
+        centre = QPointF(width / 2, width / 2)
+        if selected:
+            painter.setPen(QPen(QColor(theme.OUTLINE), 1.0))
+            painter.setBrush(QColor(theme.SELECTED_COLOUR))
+            painter.drawEllipse(centre, radius + HALO, radius + HALO)
+        colour = QColor(theme.STATE_COLOURS[state])
+        outline = QPen(QColor(theme.OUTLINE), 1.2)
+        match state:
+            case LandmarkState.SOURCE_ONLY | LandmarkState.DESTINATION_ONLY | LandmarkState.EMPTY:
+                painter.setPen(QPen(QColor(theme.OUTLINE), 5.0))
+                painter.setBrush(Qt.BrushStyle.NoBrush)
+                painter.drawEllipse(centre, radius, radius)
+                painter.setPen(QPen(colour, 2.8))
+                painter.drawEllipse(centre, radius, radius)
+            case LandmarkState.PASSENGER:
+                painter.setPen(outline)
+                painter.setBrush(QBrush(colour))
+                r = radius + 1
+                painter.drawPolygon(
+                    QPolygonF([centre + QPointF(*d) for d in ((0, -r), (r, 0), (0, r), (-r, 0))])
+                )
+            case _:
+                painter.setPen(outline)
+                painter.setBrush(QBrush(colour))
+                painter.drawEllipse(centre, radius, radius)
+                if state is LandmarkState.DISABLED:
+                    painter.setPen(QPen(QColor(theme.PAPER), 2))
+                    bar = QPointF(radius / 2, -radius / 2)
+                    painter.drawLine(centre - bar, centre + bar)
     return pixmap
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from qtpy.QtCore import QObject, Qt
-from qtpy.QtGui import QAction, QKeySequence, QShortcut
+from qtpy.QtCore import Qt
+from qtpy.QtGui import QKeySequence, QShortcut
 from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.landmarks import Side
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.penalty.passing_preview import PassingPreview
 from pinwarp.gui.scene.drawables import Badge, Drawable
 from pinwarp.gui.style.lengths import format_length
@@ -40,12 +42,12 @@ class PenaltyTrail:
 
     def __init__(self, editor: Editor) -> None:
         self._editor = editor
-        self._present = editor.committed.warping_penalty
+        self._present = editor.committed.settings.penalty
         self.previous: float | None = None
 
     def follow(self) -> None:
         """Look at what is committed now."""
-        editor, penalty = self._editor, self._editor.committed.warping_penalty
+        editor, penalty = self._editor, self._editor.committed.settings.penalty
         if editor.undo_label is None and editor.redo_label is None:
             # Another session: what was before it is nobody's previous penalty.
             self.previous = None
@@ -54,15 +56,13 @@ class PenaltyTrail:
         self._present = penalty
 
 
-class PenaltyComparison(QObject):
+class PenaltyComparison(Capability):
     """Shows the session at the previous penalty while B is held.
 
     Parameters
     ----------
     editor
         The truth.
-    action
-        Takes the previous penalty for good.
     scenes
         Where it is said what is shown.
     say
@@ -74,24 +74,31 @@ class PenaltyComparison(QObject):
     def __init__(
         self,
         editor: Editor,
-        action: QAction,
         scenes: Scenes,
         say: Callable[[str], None],
         window: QWidget,
     ) -> None:
-        super().__init__(window)
         self._editor = editor
-        self._action = action
         self._scenes = scenes
         self._badge = ""
         self._say = say
         self._trail = PenaltyTrail(editor)
-        self._preview = PassingPreview(editor, self, Qt.Key.Key_B)
+        self._preview = PassingPreview(editor, window, Qt.Key.Key_B)
         self._preview.ended.connect(self._on_ended)
         self._key = QShortcut(QKeySequence(Qt.Key.Key_B), window)
         self._key.setAutoRepeat(False)
         self._key.activated.connect(self._on_held)
-        action.triggered.connect(self._swap)
+        self.actions = (
+            Action(
+                "swap_penalty",
+                # Behind the tab stands the key that is held; the action itself has none.
+                "Compare with &Previous Penalty\tB (hold)",
+                self._swap,
+                at="Warp.12",
+                tip="Go back to the previous penalty; hold B only to look at it",
+                possible=lambda: self._trail.previous is not None,
+            ),
+        )
         editor.session_changed.connect(self._on_session)
         self._on_session(editor.session)
 
@@ -102,7 +109,7 @@ class PenaltyComparison(QObject):
 
     def _on_session(self, _session: Session) -> None:
         self._trail.follow()
-        self._action.setEnabled(self._trail.previous is not None)
+        self.actions[0].renew()
 
     def _on_held(self) -> None:
         previous = self._trail.previous

@@ -9,6 +9,7 @@ from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QWidget
 
 from pinwarp.core.findings import FindingKind
+from pinwarp.core.lengths import rounding_among
 from pinwarp.core.spline import PenaltyConvention
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.lengths import format_length
@@ -103,8 +104,7 @@ def tidy_residual(result: WarpResult | None) -> float | None:
     rms = result.rms_residual if result is not None else None
     if rms is None or result is None:
         return None
-    size = max((abs(x) for place in result.inputs.destination for x in place), default=0.0)
-    return 0.0 if rms < 1e-9 * size else rms
+    return 0.0 if rms < rounding_among(result.inputs.destination) else rms
 
 
 def warnings_of(session: Session, result: WarpResult | None) -> str:
@@ -131,7 +131,7 @@ def warnings_of(session: Session, result: WarpResult | None) -> str:
         ]
         if not has_modes:
             notes.append("The penalty acts from five pairs on.")
-    if session.convention is PenaltyConvention.OPYNSIM and has_modes and not notes:
+    if session.settings.convention is PenaltyConvention.OPYNSIM and has_modes and not notes:
         notes.append(
             "OPynSim's published equation has poles (the ticks): the warp overshoots before "
             "each and flips behind it."

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtGui import QAction
@@ -53,8 +53,8 @@ class PenaltyPanel(QWidget):
 
     Parameters
     ----------
-    actions
-        The window's actions by key; some have a button here.
+    curve, snapshots
+        The actions that have a button here; behind the first snapshot's are the others.
     """
 
     penalty_previewed = Signal(float)
@@ -63,8 +63,8 @@ class PenaltyPanel(QWidget):
     planar_requested = Signal(bool)
     unit_requested = Signal(str)
 
-    def __init__(self, actions: Mapping[str, QAction], parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, curve: QAction, snapshots: Sequence[QAction]) -> None:
+        super().__init__()
         self._factor: SourceFactor | None = None
         self._result: WarpResult | None = None
         self._quality: Quality | None = None
@@ -96,7 +96,7 @@ class PenaltyPanel(QWidget):
         self.planar = QPushButton("Treat as planar")
         self.planar.setCheckable(True)
         self.planar.setToolTip("Keep the warp tame across the plane that the landmarks lie in")
-        self._lay_out(actions)
+        self._lay_out(curve, snapshots)
 
         self.slider.sliderPressed.connect(self._on_pressed)
         self.slider.valueChanged.connect(self._on_slid)
@@ -110,7 +110,7 @@ class PenaltyPanel(QWidget):
         self.show_session(self._session)
         self.show_result(None)
 
-    def _lay_out(self, actions: Mapping[str, QAction]) -> None:
+    def _lay_out(self, curve: QAction, snapshots: Sequence[QAction]) -> None:
         slider = QHBoxLayout()
         slider.setSpacing(theme.SPACE)
         # What stands at the curves' ends takes more room than the ends of the slider.
@@ -129,11 +129,11 @@ class PenaltyPanel(QWidget):
         buttons = QHBoxLayout()
         buttons.setSpacing(4)
         buttons.addWidget(self.suggested, 1)
-        buttons.addWidget(_tool_button(actions["show_curve"]))
+        buttons.addWidget(_tool_button(curve))
         # Kept: Python must not let go of a menu that Qt still shows.
         self._snapshot_menu = QMenu(self)
-        self._snapshot_menu.addActions([actions[x] for x in ("sweep", "clear_snapshots")])
-        snapshot = _tool_button(actions["snapshot"])
+        self._snapshot_menu.addActions(snapshots[1:])
+        snapshot = _tool_button(snapshots[0])
         snapshot.setMenu(self._snapshot_menu)
         snapshot.setPopupMode(QToolButton.ToolButtonPopupMode.MenuButtonPopup)
         buttons.addWidget(snapshot)
@@ -165,14 +165,14 @@ class PenaltyPanel(QWidget):
         before, self._session = self._session, session
         if session.unit != before.unit:
             self.show_result(self._result)
-        if (session.unit, session.convention) != (before.unit, before.convention):
+        if (session.unit, session.settings.convention) != (before.unit, before.settings.convention):
             self._show_curve()
         if not self.value.hasFocus() or not self.value.isModified():
-            penalty = session.warping_penalty
+            penalty = session.settings.penalty
             self.value.setText("affine" if math.isinf(penalty) else f"{penalty:.6g}")
             self.value.setModified(False)
         self._show_unit(session.unit)
-        self.convention.setCurrentIndex(self.convention.findData(session.convention))
+        self.convention.setCurrentIndex(self.convention.findData(session.settings.convention))
         self._place_handle()
 
     def _show_unit(self, unit: str) -> None:
@@ -195,9 +195,9 @@ class PenaltyPanel(QWidget):
         self.value.setEnabled(has_modes)
         self.figures.show_flexibility(result.flexibility if result is not None else None)
         self._show_words()
-        self.planar.setVisible(is_nearly_planar(result) or self._session.planar)
-        self.planar.setChecked(self._session.planar)
-        opynsim = self._session.convention is PenaltyConvention.OPYNSIM
+        self.planar.setVisible(is_nearly_planar(result) or self._session.settings.planar)
+        self.planar.setChecked(self._session.settings.planar)
+        opynsim = self._session.settings.convention is PenaltyConvention.OPYNSIM
         poles = self._factor.poles.tolist() if self._factor is not None and opynsim else []
         self.slider.set_poles(tuple(self._share_of(pole) for pole in poles))
         if not has_modes:
@@ -223,23 +223,23 @@ class PenaltyPanel(QWidget):
             count = len(self._result.inputs.source) if self._result is not None else 0
             self.plot.show_curve(None, _NO_CURVE if count < LEAST_PAIRS else "")
         else:
-            regular = self._session.convention is PenaltyConvention.REGULARISING
+            regular = self._session.settings.convention is PenaltyConvention.REGULARISING
             title = [f"RMS over {len(self._quality.inputs.source)} pairs"]
             title += [] if regular else ["by the regularising convention"]
-            title += [] if self._quality.inputs.is_whole else ["of the whole warp"]
+            title += [] if self._quality.inputs.settings.is_whole else ["of the whole warp"]
             self.plot.show_curve(Plotted(curve, factor, unit, regular, ", ".join(title)))
         self._show_suggestion()
 
     def _show_words(self) -> None:
         curve = self._curve
         advice = penalty_advice(curve) if curve is not None else ""
-        if curve is not None and self._session.convention is PenaltyConvention.OPYNSIM:
+        if curve is not None and self._session.settings.convention is PenaltyConvention.OPYNSIM:
             advice = ""
         self.warning.show_words(warnings_of(self._session, self._result), advice)
 
     def _show_suggestion(self) -> None:
         curve, penalty = self._curve, self.suggestion
-        there = penalty is not None and penalty == self._session.warping_penalty
+        there = penalty is not None and penalty == self._session.settings.penalty
         self.suggested.setEnabled(penalty is not None and not there)
         words, tip = "No penalty suggested", penalty_advice(curve) if curve is not None else ""
         if penalty is not None:
@@ -254,8 +254,8 @@ class PenaltyPanel(QWidget):
     def _show_present(self) -> None:
         """Mark the penalty on the curve, with the figures that it has there."""
         session = self._session
-        share = self._share_of(session.warping_penalty)
-        figures = self._figures_at(session.warping_penalty, share)
+        share = self._share_of(session.settings.penalty)
+        figures = self._figures_at(session.settings.penalty, share)
         unit = unit_on(session, Side.DESTINATION)
         self.figures.show_left_out(figures[0] if figures else math.nan, unit)
         has_place = self._factor is not None and len(self._factor.poles) > 0
@@ -267,13 +267,13 @@ class PenaltyPanel(QWidget):
         quality, result = self._quality, self._result
         if quality is None or quality.curve is None or result is None:
             return None
-        if self._session.convention is PenaltyConvention.OPYNSIM and penalty > 0:
+        if self._session.settings.convention is PenaltyConvention.OPYNSIM and penalty > 0:
             return None
         left_out, residual = quality.curve.at(1.0 - share)
-        exact = quality.inputs.penalty == penalty and not quality.curve.is_affine
+        exact = quality.inputs.settings.penalty == penalty and not quality.curve.is_affine
         if quality.left_out is not None and exact:
             left_out = quality.left_out.rms
-        if result.inputs.is_whole and result.inputs.penalty == penalty:
+        if result.inputs.settings.is_whole and result.inputs.settings.penalty == penalty:
             residual = tidy_residual(result) or 0.0
         return left_out, residual
 
@@ -289,12 +289,12 @@ class PenaltyPanel(QWidget):
         if self._sliding:
             return
         self.slider.blockSignals(True)
-        self.slider.setValue(round(self._share_of(self._session.warping_penalty) * STEPS))
+        self.slider.setValue(round(self._share_of(self._session.settings.penalty) * STEPS))
         self.slider.blockSignals(False)
 
     def _penalty_at_handle(self) -> float:
         if self._factor is None:
-            return self._session.warping_penalty
+            return self._session.settings.penalty
         return self._factor.penalty_at(1.0 - self.slider.value() / STEPS)
 
     # What the user does
@@ -302,7 +302,10 @@ class PenaltyPanel(QWidget):
     @property
     def suggestion(self) -> float | None:
         """The penalty that may be taken in one go, if the pairs suggest one."""
-        if self._curve is None or self._session.convention is not PenaltyConvention.REGULARISING:
+        if (
+            self._curve is None
+            or self._session.settings.convention is not PenaltyConvention.REGULARISING
+        ):
             return None
         return self._curve.suggested
 
@@ -339,7 +342,7 @@ class PenaltyPanel(QWidget):
             self.warning.show_words(
                 f"“{self.value.text()}” is not a penalty: type a number of 0 or more, or “affine”."
             )
-            self.value.setText(f"{self._session.warping_penalty:.6g}")
+            self.value.setText(f"{self._session.settings.penalty:.6g}")
             return
         self.penalty_requested.emit(penalty)
 

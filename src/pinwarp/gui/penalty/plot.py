@@ -201,19 +201,18 @@ class PenaltyPlot(QWidget):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Paint axis, curves, the present penalty, the suggestion and what is hovered."""
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        area = self._area
-        if self._plotted is None:
-            painter.fillRect(area, self.palette().color(QPalette.ColorRole.Base))
-            painter.setPen(self._quiet)
-            painter.drawText(area.adjusted(12, 0, -12, 0), _CENTRED, self._hint)
-        else:
-            painter.drawPixmap(0, 0, self._resting_picture(area, self._plotted))
-            self._paint_present(painter, area)
-            self._paint_suggestion(painter)
-            self._paint_title(painter, area, self._plotted)
-        painter.end()
+        with QPainter(self) as painter:
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            area = self._area
+            if self._plotted is None:
+                painter.fillRect(area, self.palette().color(QPalette.ColorRole.Base))
+                painter.setPen(self._quiet)
+                painter.drawText(area.adjusted(12, 0, -12, 0), _CENTRED, self._hint)
+            else:
+                painter.drawPixmap(0, 0, self._resting_picture(area, self._plotted))
+                self._paint_present(painter, area)
+                self._paint_suggestion(painter)
+                self._paint_title(painter, area, self._plotted)
 
     def _resting_picture(self, area: QRectF, plotted: Plotted) -> QPixmap:
         """Return axis and curves, drawn once: the slider moves over them at every frame."""
@@ -224,13 +223,12 @@ class PenaltyPlot(QWidget):
             self._picture = QPixmap(self.size() * ratio)
             self._picture.setDevicePixelRatio(ratio)
             self._picture.fill(Qt.GlobalColor.transparent)
-            painter = QPainter(self._picture)
-            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-            painter.setFont(self.font())
-            painter.fillRect(area, palette.color(QPalette.ColorRole.Base))
-            self._paint_axis(painter, area, plotted)
-            self._paint_curves(painter, area, plotted)
-            painter.end()
+            with QPainter(self._picture) as painter:
+                painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+                painter.setFont(self.font())
+                painter.fillRect(area, palette.color(QPalette.ColorRole.Base))
+                self._paint_axis(painter, area, plotted)
+                self._paint_curves(painter, area, plotted)
         return self._picture
 
     @property

@@ -54,9 +54,8 @@ class PenaltySlider(QSlider):
         super().paintEvent(event)
         if not self._poles:
             return
-        painter = QPainter(self)
-        painter.setPen(QPen(QColor(theme.WARNING_COLOUR), 1.5))
-        painter.drawLines(
-            [QLineF(x, 0, x, 7) for x in (self.place_of(share) for share in self._poles)]
-        )
-        painter.end()
+        with QPainter(self) as painter:
+            painter.setPen(QPen(QColor(theme.WARNING_COLOUR), 1.5))
+            painter.drawLines(
+                [QLineF(x, 0, x, 7) for x in (self.place_of(share) for share in self._poles)]
+            )

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+import weakref
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from qtpy.QtCore import QSize, Qt, Signal
 from qtpy.QtGui import (
@@ -30,6 +31,7 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
+from pinwarp.core.mesh import Mesh
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.lengths import format_length, format_number
 from pinwarp.session.warp.solver import WarpInputs
@@ -47,7 +49,9 @@ class Snapshot:
     picture
         Of the destination with the warped source over it.
     inputs
-        What the warp was computed from.
+        What the warp was computed from, without meshes: a picture keeps none alive.
+    mesh
+        The source mesh, as long as somebody else holds it; None where there was none.
     flexibility, leave_one_out, residual
         Its figures; None where there is none.
     unit
@@ -56,6 +60,7 @@ class Snapshot:
 
     picture: QImage
     inputs: WarpInputs
+    mesh: weakref.ref[Mesh] | None
     flexibility: float | None
     leave_one_out: float | None
     residual: float | None
@@ -64,19 +69,24 @@ class Snapshot:
     def what_changed(self, now: WarpInputs) -> str:
         """Say in words why the picture does not hold any more; empty where it does."""
         was = self.inputs
-        if was.mesh is not now.mesh:
+        if (now.mesh is None) != (self.mesh is None):
             return "mesh changed"
-        pairs = (was.source, was.destination, was.planar)
-        if pairs != (now.source, now.destination, now.planar):
+        if self.mesh is not None and self.mesh() is not now.mesh:
+            return "mesh changed"
+        before, after = was.settings, now.settings
+        pairs = (was.source, was.destination, before.planar)
+        if pairs != (now.source, now.destination, after.planar):
             return "pairs changed"
-        if (was.components, was.blend) != (now.components, now.blend):
+        if (before.components, before.blend) != (after.components, after.blend):
             return "applied part changed"
-        return "convention changed" if was.convention is not now.convention else ""
+        if before.convention is not after.convention:
+            return "convention changed"
+        return "" if replace(before, penalty=after.penalty) == after else "settings changed"
 
     @property
     def title(self) -> str:
         """The penalty in words."""
-        penalty = self.inputs.penalty
+        penalty = self.inputs.settings.penalty
         return "Affine fit" if math.isinf(penalty) else format_length(penalty, self.unit, 3)
 
     @property
@@ -225,7 +235,7 @@ class SnapshotStrip(QScrollArea):
 
     def _tile(self, snapshot: Snapshot) -> SnapshotTile:
         tile = SnapshotTile(snapshot)
-        tile.taken.connect(lambda: self.penalty_requested.emit(snapshot.inputs.penalty))
+        tile.taken.connect(lambda: self.penalty_requested.emit(snapshot.inputs.settings.penalty))
         tile.removed.connect(lambda: self.removal_requested.emit(snapshot))
         return tile
 

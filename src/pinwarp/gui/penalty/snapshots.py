@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import weakref
+from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from qtpy.QtCore import QObject, QRect, QRectF, QSize, Qt
-from qtpy.QtGui import QAction, QImage
+from qtpy.QtGui import QImage
 
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.penalty.figures import tidy_residual
 from pinwarp.gui.penalty.passing_preview import PassingPreview
 from pinwarp.gui.penalty.snapshot_strip import PICTURE, Snapshot, SnapshotStrip
 from pinwarp.gui.views.canvas import Canvas
 from pinwarp.gui.views.scenes import Scenes
 from pinwarp.gui.warp.quality import QualityPresenter
-from pinwarp.gui.warp.warps import Presenter
+from pinwarp.gui.warp.warps import Warps
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.session import Session
@@ -30,19 +34,15 @@ _NO_WARP = "There is no warp to picture yet: place pairs on both meshes."
 _NO_SCALE = "A sweep needs five pairs: with fewer the penalty has nothing to act on."
 
 
-class Snapshots(QObject):
+class Snapshots(Capability):
     """Keeps the window's snapshots; they are not part of the session.
 
     Parameters
     ----------
-    editor, presenter, quality
+    editor, warps, quality
         Where the warps and their figures come from.
     scenes, canvas
         What is pictured.
-    strip
-        Where the snapshots are shown.
-    actions
-        The window's actions by key.
     say
         Shows a message in the status bar.
     parent
@@ -52,52 +52,70 @@ class Snapshots(QObject):
     def __init__(
         self,
         editor: Editor,
-        presenter: Presenter,
+        warps: Warps,
         quality: QualityPresenter,
         scenes: Scenes,
         canvas: Canvas,
-        strip: SnapshotStrip,
-        actions: Mapping[str, QAction],
         say: Callable[[str], None],
         parent: QObject,
     ) -> None:
-        super().__init__(parent)
         self._editor = editor
-        self._presenter = presenter
+        self._warps = warps
         self._quality = quality
         self._scenes = scenes
         self._canvas = canvas
-        self._strip = strip
-        self._actions = actions
         self._say = say
         self.snapshots: tuple[Snapshot, ...] = ()
         self._ahead: list[float] = []
         self._swept: list[Snapshot] = []
-        self._preview = PassingPreview(editor, self)
+        self._preview = PassingPreview(editor, parent)
         self._preview.ended.connect(self._on_ended)
-        actions["snapshot"].triggered.connect(self.take)
-        actions["sweep"].triggered.connect(self.sweep)
-        actions["clear_snapshots"].triggered.connect(self.clear)
+        self.actions = (
+            Action(
+                "snapshot",
+                "Take S&napshot",
+                self.take,
+                at="Warp.21",
+                keys="P",
+                tip="A picture of the warp at this penalty",
+                button="Snapshot",
+            ),
+            Action(
+                "sweep",
+                "S&weep: 5 Snapshots",
+                self.sweep,
+                at="Warp.22",
+                tip="From interpolation to the affine fit",
+            ),
+            Action(
+                "clear_snapshots",
+                "&Clear Snapshots",
+                self.clear,
+                at="Warp.23",
+                possible=lambda: self.snapshots,
+            ),
+        )
+        self.strip = strip = SnapshotStrip(self.actions)
         strip.penalty_requested.connect(self._on_penalty)
         strip.removal_requested.connect(self._on_removal)
         editor.session_changed.connect(self._on_session)
-        presenter.result_changed.connect(self._on_result)
+        warps.result_changed.connect(self._on_result)
         self._show()
 
     def shut_down(self) -> None:
-        """Let go of the editor and the presenter."""
+        """Let go of the editor and the warps."""
         self._preview.shut_down()
         self._editor.session_changed.disconnect(self._on_session)
-        self._presenter.result_changed.disconnect(self._on_result)
+        self._warps.result_changed.disconnect(self._on_result)
 
     @property
-    def is_sweeping(self) -> bool:
-        """Whether a sweep is under way."""
-        return self._preview.session is not None
+    def is_settled(self) -> bool:
+        """Whether no sweep is under way."""
+        return self._preview.session is None
 
     def take(self) -> None:
         """Picture the warp as it is shown."""
-        result = self._presenter.result
+        result = self._warps.result
         if result is None or result.shown is None:
             self._say(_NO_WARP)
         else:
@@ -105,7 +123,7 @@ class Snapshots(QObject):
 
     def sweep(self) -> None:
         """Picture the warp from interpolation to the affine fit."""
-        result = self._presenter.result
+        result = self._warps.result
         factor = result.factor if result is not None else None
         if factor is None or not factor.has_modes or not len(factor.poles):
             self._say(_NO_SCALE)
@@ -148,20 +166,21 @@ class Snapshots(QObject):
     def _keep(self, *taken: Snapshot) -> None:
         self.snapshots = (*self.snapshots, *taken)[-MOST:]
         self._show()
-        self._strip.show_last()
+        self.strip.show_last()
 
     def _snapshot(self, result: WarpResult) -> Snapshot:
         # The warp has just arrived, and is not seen yet.
         self._scenes.show_now()
         quality, flexibility = self._quality.quality, result.flexibility
-        left_out = None
+        left_out, mesh = None, result.inputs.mesh
         if quality is not None and quality.curve is not None and flexibility is not None:
             pairs = (quality.inputs.source, quality.inputs.destination)
             if pairs == (result.inputs.source, result.inputs.destination):
                 left_out, _ = quality.curve.at(flexibility)
         return Snapshot(
             picture=picture_of(self._canvas),
-            inputs=result.inputs,
+            inputs=replace(result.inputs, mesh=None, stand_in=None),
+            mesh=weakref.ref(mesh) if mesh is not None else None,
             flexibility=flexibility,
             leave_one_out=left_out if left_out is not None and np.isfinite(left_out) else None,
             residual=tidy_residual(result),
@@ -179,17 +198,17 @@ class Snapshots(QObject):
         self._show_states()
 
     def _show(self) -> None:
-        self._strip.show_snapshots(self.snapshots)
-        self._actions["clear_snapshots"].setEnabled(bool(self.snapshots))
+        self.strip.show_snapshots(self.snapshots)
+        self.actions[-1].renew()
         self._show_states()
 
     def _show_states(self) -> None:
-        if not self._strip.tiles:
+        if not self.strip.tiles:
             return
         now = WarpInputs.of(self._editor.session)
-        for tile in self._strip.tiles:
+        for tile in self.strip.tiles:
             changed = tile.snapshot.what_changed(now)
-            tile.show_state(changed, tile.snapshot.inputs.penalty == now.penalty)
+            tile.show_state(changed, tile.snapshot.inputs.settings.penalty == now.settings.penalty)
 
 
 def picture_of(canvas: Canvas) -> QImage:

@@ -1,96 +1,140 @@
-"""Everything about tuning the penalty that is not the slider: suggestion, comparison, snapshots."""
+"""The penalty: its panel, what is asked for there, and what is suggested."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from qtpy.QtCore import Signal
+from qtpy.QtWidgets import QVBoxLayout, QWidget
 
-from qtpy.QtCore import QObject
-from qtpy.QtGui import QAction
-from qtpy.QtWidgets import QWidget
-
-from pinwarp.gui.penalty.comparison import PenaltyComparison
+from pinwarp.core.spline import PenaltyConvention
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import BOTTOM, Capability, Panel
 from pinwarp.gui.penalty.panel import PenaltyPanel
-from pinwarp.gui.penalty.snapshot_strip import SnapshotStrip
 from pinwarp.gui.penalty.snapshots import Snapshots
-from pinwarp.gui.views.canvas import Canvas
-from pinwarp.gui.views.scenes import Scenes
 from pinwarp.gui.warp.quality import QualityPresenter
-from pinwarp.gui.warp.warps import Presenter
-from pinwarp.session.editor import Editor, ViewState
+from pinwarp.gui.warp.warps import Warps
+from pinwarp.session import edits
+from pinwarp.session.editor import Editor
 from pinwarp.session.judging.quality import Quality
+from pinwarp.session.view import ViewState
+from pinwarp.session.warp.solver import WarpResult
 
 
-class PenaltyTuning(QObject):
-    """Wires editor and figures to the panel of the penalty and the strip of snapshots.
+class PenaltyTuning(Capability):
+    """Everything between editor, figures and the panel of the penalty.
 
     Parameters
     ----------
-    editor, presenter, quality
+    editor, warps, quality
         The truth, its warps and their figures.
-    scenes, canvas
-        Where it is shown and pictured.
-    panel, strip
-        What it fills.
-    actions
-        The window's actions by key.
-    say
-        Shows a message in the status bar.
-    window
-        Where the keys count.
+    snapshots
+        Their button is in the panel, their strip above it.
     """
 
     def __init__(
-        self,
-        editor: Editor,
-        presenter: Presenter,
-        quality: QualityPresenter,
-        scenes: Scenes,
-        canvas: Canvas,
-        panel: PenaltyPanel,
-        strip: SnapshotStrip,
-        actions: Mapping[str, QAction],
-        say: Callable[[str], None],
-        window: QWidget,
+        self, editor: Editor, warps: Warps, quality: QualityPresenter, snapshots: Snapshots
     ) -> None:
-        super().__init__(window)
         self._editor = editor
+        self._warps = warps
         self._quality = quality
-        self._panel = panel
-        self._actions = actions
-        self.comparison = PenaltyComparison(editor, actions["swap_penalty"], scenes, say, window)
-        self.snapshots = Snapshots(
-            editor, presenter, quality, scenes, canvas, strip, actions, say, self
+        curve = Action(
+            "show_curve",
+            "Penalty C&urve",
+            switches=lambda on: editor.look(curve=on),
+            checked=lambda: editor.view.curve,
+            at="View.52",
+            tip="Leave-one-out error and residual",
+            button="Curve",
         )
-        actions["take_suggested"].triggered.connect(panel.take_suggested)
-        actions["show_curve"].toggled.connect(self._on_curve)
-        quality.quality_changed.connect(self._on_quality)
-        editor.view_changed.connect(self._on_view)
+        self.panel = PenaltyPanel(curve, snapshots.actions)
+        self._take = Action(
+            "take_suggested",
+            "Take &Suggested Penalty",
+            self.panel.take_suggested,
+            at="Warp.11",
+            keys="T",
+            tip="The one with the least leave-one-out error",
+            possible=lambda: self.panel.suggestion is not None,
+        )
+        self.actions = (self._take, curve)
+        self._dock = _Dock(snapshots.strip, self.panel)
+        snapshots.strip.height_changed.connect(self._dock.height_changed)
+        self.panels = (
+            Panel("penalty", "Warping penalty", self._dock, BOTTOM, self._dock.height_changed),
+        )
+        self._connect()
+        self.panel.show_session(editor.session)
         self._on_quality(quality.quality)
-        self._on_view(editor.view)
+        self.panel.show_plot(editor.view.curve)
+
+    def _connect(self) -> None:
+        editor, panel = self._editor, self.panel
+        panel.penalty_previewed.connect(
+            lambda penalty: editor.preview(edits.set_penalty(editor.committed, penalty))
+        )
+        panel.penalty_requested.connect(self._on_penalty)
+        panel.convention_requested.connect(self._on_convention)
+        panel.planar_requested.connect(self._on_planar)
+        panel.unit_requested.connect(
+            lambda unit: editor.commit(edits.set_unit(editor.committed, unit), "Change unit")
+        )
+        editor.session_changed.connect(panel.show_session)
+        editor.view_changed.connect(self._on_view)
+        self._warps.result_changed.connect(self._on_result)
+        self._warps.figures_changed.connect(panel.show_result)
+        self._quality.quality_changed.connect(self._on_quality)
 
     def shut_down(self) -> None:
-        """Let go of everything that outlives the window."""
-        self.comparison.shut_down()
-        self.snapshots.shut_down()
-        self._quality.quality_changed.disconnect(self._on_quality)
+        """Let go of the editor, the warps and the figures."""
+        self._editor.session_changed.disconnect(self.panel.show_session)
         self._editor.view_changed.disconnect(self._on_view)
+        self._warps.result_changed.disconnect(self._on_result)
+        self._warps.figures_changed.disconnect(self.panel.show_result)
+        self._quality.quality_changed.disconnect(self._on_quality)
 
-    @property
-    def is_settled(self) -> bool:
-        """Whether no sweep is under way."""
-        return not self.snapshots.is_sweeping
+    # What changed
+
+    def _on_result(self, result: WarpResult) -> None:
+        # Each widget that changes costs a composition of the window: only the slider's is live.
+        if result.inputs.settings.penalty != self._editor.committed.settings.penalty:
+            self.panel.show_result(result)
 
     def _on_quality(self, quality: Quality | None) -> None:
         editor = self._editor
         if editor.is_previewing and editor.session.landmarks != editor.committed.landmarks:
             # While a landmark moves nobody looks at the curve: it follows when that is dropped.
             return
-        self._panel.show_quality(quality)
-        self._actions["take_suggested"].setEnabled(self._panel.suggestion is not None)
-
-    def _on_curve(self, shown: bool) -> None:
-        self._editor.look(curve=shown)
+        self.panel.show_quality(quality)
+        self._take.renew()
 
     def _on_view(self, view: ViewState) -> None:
-        self._actions["show_curve"].setChecked(view.curve)
-        self._panel.show_plot(view.curve)
+        if self.panel.plot.isHidden() == view.curve:
+            self.panel.show_plot(view.curve)
+            self._dock.height_changed.emit()
+
+    # What the user does
+
+    def _on_penalty(self, penalty: float) -> None:
+        session = edits.set_penalty(self._editor.committed, penalty)
+        self._editor.commit(session, "Change penalty")
+
+    def _on_convention(self, convention: PenaltyConvention) -> None:
+        session = edits.set_convention(self._editor.committed, convention)
+        self._editor.commit(session, "Change penalty convention")
+
+    def _on_planar(self, planar: bool) -> None:
+        label = "Treat as planar" if planar else "Do not treat as planar"
+        self._editor.commit(edits.set_planar(self._editor.committed, planar), label)
+
+
+class _Dock(QWidget):
+    """The strip of snapshots above the panel."""
+
+    height_changed = Signal()
+
+    def __init__(self, strip: QWidget, panel: QWidget) -> None:
+        super().__init__()
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(0)
+        rows.addWidget(strip)
+        rows.addWidget(panel, 1)

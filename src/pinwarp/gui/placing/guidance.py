@@ -2,86 +2,150 @@
 
 from __future__ import annotations
 
-from psygnal import Signal
 from qtpy.QtWidgets import QLabel
 
 from pinwarp.core.landmarks import Side
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
+from pinwarp.gui.placing.ghosts import Ghosts
 from pinwarp.gui.placing.guide_bar import GuideBar
+from pinwarp.gui.placing.hand import Hand
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, FileTasks
-from pinwarp.gui.warp.warps import Presenter
 from pinwarp.io.template import read_template
 from pinwarp.session.editor import Editor
 from pinwarp.session.guide import next_incomplete, step_at, with_template
+from pinwarp.session.session import Session
+from pinwarp.session.signals import isolated
 
 
-class Guidance:
+class Guidance(Capability):
     """Tells the user where things stand; ``said`` emits messages for the status bar.
 
     Parameters
     ----------
-    editor, presenter
+    editor, hand, ghosts
         Where the words come from.
     tasks
         Reads, asks and tells.
-    bar, hint
-        Where they are shown.
     """
 
-    said = Signal(str)
+    said = isolated(str)
 
     def __init__(
         self,
         editor: Editor,
-        presenter: Presenter,
+        hand: Hand,
+        ghosts: Ghosts,
         tasks: FileTasks[Dialogs],
-        bar: GuideBar,
-        hint: QLabel,
     ) -> None:
         self._editor = editor
-        self._presenter = presenter
+        self._hand = hand
+        self._ghosts = ghosts
         self._tasks = tasks
-        self._bar = bar
-        self._hint = hint
+        self.bar = bar = GuideBar()
+        self.above = (bar,)
+        self.hint = QLabel()
+        self.hints = (self.hint,)
+        self.actions = (
+            Action(
+                "load_template",
+                "Load &Template…",
+                self.load_template,
+                at="Place.21",
+                keys="Ctrl+T",
+                tip="A list of landmarks to be asked for",
+            ),
+            Action(
+                "guide",
+                "&Guide",
+                switches=self.switch,
+                checked=lambda: editor.view.guided is not None,
+                at="Place.22 tools.32",
+                keys="G",
+                icon="guide",
+                tip="Ask for one landmark after the other",
+            ),
+            Action(
+                "set_pattern",
+                "Name Pa&ttern…",
+                self.ask_pattern,
+                at="Place.23",
+                tip="What new landmarks are called",
+            ),
+            Action(
+                "set_nudge",
+                "Nudge Ste&p…",
+                self.ask_nudge,
+                at="Place.32",
+                tip="How far an arrow key moves a landmark",
+            ),
+        )
         bar.skip_requested.connect(lambda: self._step_guide(backwards=False))
         bar.back_requested.connect(lambda: self._step_guide(backwards=True))
         bar.end_requested.connect(lambda: editor.look(guided=None))
+        editor.session_changed.connect(self._on_session)
+        self._shown_on = (editor.selection_changed, editor.view_changed)
+        for signal in self._shown_on:
+            signal.connect(self.show)
+        self.show()
 
-    def show(self) -> None:
+    def shut_down(self) -> None:
+        """Let go of the editor."""
+        self._editor.session_changed.disconnect(self._on_session)
+        for signal in self._shown_on:
+            signal.disconnect(self.show)
+
+    def _on_session(self, _session: Session) -> None:
+        editor = self._editor
+        if editor.is_previewing:
+            # What is said is about the committed session: a drag need not wait for it.
+            return
+        guided = editor.view.guided
+        if guided is not None and editor.session.index_of(guided) is None:
+            # Undone or deleted: go on with another.
+            editor.look(guided=next_incomplete(editor.session, None))
+        self.show()
+
+    def show(self, _changed: object = None) -> None:
         """Show what is asked for and what a click would do, as things stand."""
-        self._show_guide()
+        session, guided = self._editor.session, self._editor.view.guided
+        is_there = guided is not None and session.index_of(guided) is not None
+        self.bar.show_step(session, step_at(session, guided) if guided and is_there else None)
         self._show_hint()
 
     def _show_hint(self) -> None:
         """Say what a click would do right now."""
         editor, session = self._editor, self._editor.session
         if editor.view.hovered is not None:
-            self._hint.setText(self._hover_words(editor.view.hovered))
+            self.hint.setText(self._hover_words(editor.view.hovered))
             return
         missing = [side for side in Side if session.mesh(side) is None]
         if missing:
-            self._hint.setText(
-                f"Open the {missing[0].value} mesh to begin, or drop it on its view."
-            )
+            self.hint.setText(f"Open the {missing[0].value} mesh to begin, or drop it on its view.")
             return
         if editor.view.locked:
-            self._hint.setText("Landmarks are locked (L unlocks): a click selects, a drag orbits.")
+            self.hint.setText(
+                f"Landmarks are locked ({self._hand.lock_action.keys} unlocks): a click selects, "
+                "a drag orbits."
+            )
             return
-        target = self._presenter.requests.target
+        target = self._ghosts.target
         targets = [f"on the {side.value} places {target(side) or 'a new one'}" for side in Side]
-        ghost = "  Space accepts the ghost." if any(map(self._presenter.ghost, Side)) else ""
-        self._hint.setText(f"A click {targets[0]}, {targets[1]}.{ghost}")
+        space = self._hand.accept_action.keys
+        ghost = f"  {space} accepts the ghost." if any(map(self._ghosts.at, Side)) else ""
+        self.hint.setText(f"A click {targets[0]}, {targets[1]}.{ghost}")
 
     def _hover_words(self, name: str) -> str:
         landmark = self._editor.session.landmark(name)
         if landmark is None:
             return name
-        words = [f"{name}: {landmark.state.value}"]
+        words, snap = [f"{name}: {landmark.state.value}"], self._hand.snap_action.keys
         for side in Side:
-            off = self._presenter.requests.distance_off(landmark, side)
+            off = self._hand.distance_off(landmark, side)
             if off:
                 unit = self._editor.session.unit
-                words.append(f"{off:.3g} {unit} off the {side.value} surface (S snaps)")
+                words.append(f"{off:.3g} {unit} off the {side.value} surface ({snap} snaps)")
         if landmark.locked or self._editor.view.locked:
             words.append("locked")
         else:
@@ -108,16 +172,6 @@ class Guidance:
         editor.look(guided=name)
         if name is not None:
             editor.select(name)
-
-    def _show_guide(self) -> None:
-        editor = self._editor
-        guided = editor.view.guided
-        if guided is not None and editor.session.index_of(guided) is None:
-            # Undone or deleted: go on with another.
-            editor.look(guided=next_incomplete(editor.session, None))
-            return
-        step = step_at(editor.session, guided) if guided is not None else None
-        self._bar.show_step(editor.session, step)
 
     def load_template(self) -> None:
         """Ask for a list of names and begin with the first that is not placed."""

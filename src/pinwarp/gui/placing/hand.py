@@ -6,26 +6,27 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from psygnal import Signal
 
-from pinwarp.core.landmarks import Landmark, Side, as_position
+from pinwarp.core.landmarks import Landmark, Role, Side, as_position
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.drawn.surface import Surface
+from pinwarp.gui.placing.ghosts import Ghosts
 from pinwarp.gui.views.viewport import Viewport
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.guide import next_incomplete
 from pinwarp.session.naming import in_words
 from pinwarp.session.session import Session
-from pinwarp.session.warp.ghost import Ghost
+from pinwarp.session.signals import isolated
 
 # An arrow key moves by this share of the bone, unless a step was set.
 NUDGE_SHARE = 1 / 500
 # Nearer to the surface than this share of the bone, a landmark counts as on it.
 ON_SURFACE = 1e-4
-ALL_LOCKED = "All landmarks are locked: L unlocks them."
 
 
-class LandmarkRequests:
+class Hand(Capability):
     """Turns the requests of viewports, table and menu into edits.
 
     ``refused`` emits why something was not done, in words for the user.
@@ -36,23 +37,101 @@ class LandmarkRequests:
         What is edited.
     viewports
         Where the hand is.
-    ghost_at
-        Returns the ghost that one side shows, if any.
+    ghosts
+        What a click fills, and where it is expected.
     """
 
-    refused = Signal(str)
+    refused = isolated(str)
 
     def __init__(
         self,
         editor: Editor,
         viewports: dict[Side, Viewport],
-        ghost_at: Callable[[Side], Ghost | None],
+        ghosts: Ghosts,
     ) -> None:
         self._editor = editor
         self._viewports = viewports
-        self._ghost_at = ghost_at
+        self._ghosts = ghosts
+        self.snap_action = Action(
+            "snap",
+            "S&nap to Surface",
+            self.snap,
+            at="Place.31",
+            keys="S",
+            tip="Put the selection back onto the bone",
+        )
+        self.accept_action = Action(
+            "accept_ghost",
+            "&Accept Ghost",
+            self.accept_ghost,
+            at="Place.11",
+            keys="Space",
+            tip="Place it where it is expected",
+        )
+        self.lock_action = Action(
+            "lock",
+            "&Lock Landmarks",
+            switches=lambda on: editor.look(locked=on),
+            checked=lambda: editor.view.locked,
+            at="Place.33 tools.31",
+            keys="L",
+            icon="lock",
+            tip="Freeze all landmarks",
+        )
+        self.actions = (
+            self.snap_action,
+            self.accept_action,
+            self.lock_action,
+            *self._on_selection(),
+        )
         for side, viewport in viewports.items():
             self._connect(side, viewport)
+
+    def _on_selection(self) -> tuple[Action, ...]:
+        def is_selected() -> bool:
+            return bool(self._editor.selection.names)
+
+        return (
+            Action(
+                "delete_side",
+                "&Delete Position",
+                self.delete_side,
+                at="Edit.61 tools.23 row.61",
+                keys="Del Backspace",
+                icon="delete",
+                tip="On the selected side only",
+                possible=is_selected,
+            ),
+            Action(
+                "delete_landmark",
+                "Delete &Landmark",
+                self.delete_landmarks,
+                at="Edit.62 row.62",
+                keys="Ctrl+Del",
+                tip="On both sides",
+                possible=is_selected,
+            ),
+            Action(
+                "swap_destinations",
+                "Swap Dest&inations",
+                lambda: self.swap_destinations(self._editor.selection.names),
+                at="Edit.71 row.31",
+                tip="Of two landmarks",
+                possible=self._can_swap,
+            ),
+        )
+
+    @property
+    def all_locked(self) -> str:
+        """Why nothing is moved while all landmarks are locked."""
+        return f"All landmarks are locked: {self.lock_action.keys} unlocks them."
+
+    def _can_swap(self) -> bool:
+        session, names = self._editor.session, self._editor.selection.names
+        chosen = [mark for name in names if (mark := session.landmark(name)) is not None]
+        return len(chosen) == 2 and all(
+            mark.is_complete and mark.role is Role.PAIR for mark in chosen
+        )
 
     def _connect(self, side: Side, viewport: Viewport) -> None:
         editor = self._editor
@@ -67,10 +146,6 @@ class LandmarkRequests:
         viewport.nudged.connect(lambda across, upwards: self.nudge(side, across, upwards))
 
     # Placing
-
-    def target(self, side: Side) -> str | None:
-        """Return the landmark that a click on a side fills; None for a new one."""
-        return self._editor.view.guided or edits.next_to_place(self._editor.session, side)
 
     def place(self, side: Side, position: Iterable[float]) -> None:
         """Place the landmark that is asked for, or a new one."""
@@ -97,7 +172,7 @@ class LandmarkRequests:
     def accept_ghost(self) -> None:
         """Place the landmark that a ghost predicts, on the side that was worked on last if any."""
         side = self._editor.selection.side
-        ghost = self._ghost_at(side.other) or self._ghost_at(side)
+        ghost = self._ghosts.at(side.other) or self._ghosts.at(side)
         if ghost is None:
             self.refused.emit(
                 "There is nothing to accept: from the third pair on, a landmark placed on one side "
@@ -132,9 +207,11 @@ class LandmarkRequests:
 
     def drag(self, name: str, side: Side, position: Iterable[float]) -> None:
         """Show a landmark elsewhere while it is dragged."""
-        self._editor.select(name, side=side)
-        session = edits.move(self._editor.committed, name, side, as_position(position))
-        self._editor.preview(session)
+        editor = self._editor
+        editor.select(name, side=side)
+        # It may have been locked since it was drawn.
+        if not self._is_locked(editor.committed.landmark(name)):
+            editor.preview(edits.move(editor.committed, name, side, as_position(position)))
 
     def drop(self, name: str) -> None:
         """Leave a dragged landmark where it is."""
@@ -201,7 +278,7 @@ class LandmarkRequests:
     def _is_locked(self, landmark: Landmark | None = None) -> bool:
         """Say whether landmarks (or one of them) are frozen, telling the user so."""
         if self._editor.view.locked:
-            self.refused.emit(ALL_LOCKED)
+            self.refused.emit(self.all_locked)
             return True
         if landmark is not None and landmark.locked:
             self.refused.emit(f"{landmark.name} is locked: unlock it in the table.")

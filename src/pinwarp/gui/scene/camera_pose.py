@@ -19,6 +19,8 @@ Matrix = NDArray[np.float64]
 FILLED = 0.86
 # Positions less spread than this, compared with their longest direction, fix no turn about it.
 LEAST_SPREAD = 0.04
+# Squares of what is beyond, or nearer than its inverse, leave the range of numbers.
+FARAWAY = 1e100
 
 
 class StandardView(StrEnum):
@@ -74,16 +76,20 @@ class Pose:
     @property
     def is_proper(self) -> bool:
         """Whether it has a direction and an up across it: not so halfway through a change."""
-        back = self.position - self.focal_point
-        lengths = self.distance * float(np.linalg.norm(self.up))
-        return lengths > 0 and float(np.linalg.norm(np.cross(self.up, back))) > 1e-9 * lengths
+        places = np.abs([self.position, self.focal_point])
+        # Written so that what is no number is not proper either.
+        if not (places.max() < FARAWAY and 0 < np.abs(self.up).max() < np.inf):
+            return False
+        if not np.abs(self.position - self.focal_point).max() > 1 / FARAWAY:
+            return False
+        up, back = _direction(self.up), _direction(self.position - self.focal_point)
+        return bool(np.linalg.norm(np.cross(up, back)) > 1e-9)
 
     @property
     def frame(self) -> Matrix:
         """The (3, 3) rotation with columns right, up, and back towards the eye."""
-        back = (self.position - self.focal_point) / self.distance
-        right = np.cross(self.up, back)
-        right /= np.linalg.norm(right)
+        back = _direction(self.position - self.focal_point)
+        right = _direction(np.cross(_direction(self.up), back))
         return np.column_stack([right, np.cross(back, right), back])
 
     def is_at(self, other: Pose) -> bool:
@@ -114,6 +120,13 @@ class Pose:
         """Return the pose that looks at another place from another distance, from this side."""
         nearer = replace(self, parallel_scale=self.parallel_scale * distance / self.distance)
         return Pose.looking(nearer.frame, focal_point, distance, nearer.parallel_scale)
+
+
+def _direction(vector: Matrix) -> Matrix:
+    """Return a vector at length 1, however long or short it is."""
+    # The largest number first: squares of what is huge or tiny leave the range of numbers.
+    scaled = vector / np.abs(vector).max()
+    return np.asarray(scaled / np.linalg.norm(scaled))
 
 
 def relation_of(source: Pose, destination: Pose) -> Similarity:

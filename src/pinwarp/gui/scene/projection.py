@@ -16,6 +16,10 @@ class Projection(Protocol):
     def unit_per_pixel(self) -> float:
         """The length that a pixel shows where the camera looks, in mesh units."""
 
+    @property
+    def is_bone_lost(self) -> bool:
+        """Whether there is a bone but nothing of it in the view."""
+
     def view_key(self) -> Hashable:
         """Return what decides which places are hidden; another one after any change of it."""
 

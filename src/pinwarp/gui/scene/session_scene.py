@@ -22,10 +22,10 @@ from pinwarp.gui.scene.drawables import (
 )
 from pinwarp.io.mesh_reference import MeshReference
 from pinwarp.io.meshes import MeshFile
-from pinwarp.session.editor import Selection, ViewState
 from pinwarp.session.judging.quality import Quality
 from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.session import Session
+from pinwarp.session.view import Selection, ViewState
 from pinwarp.session.warp.pair_names import pair_names
 from pinwarp.session.warp.solver import WarpResult, is_rounding
 

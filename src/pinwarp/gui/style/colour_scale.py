@@ -14,6 +14,10 @@ from pinwarp.gui.style.lengths import round_length
 
 # A legend of ratios that reaches further than so many doublings is written in powers of two.
 POWERS_FROM = 0.9
+# The least that there is between the ends of a scale: of its level, in doublings, as a length.
+LEAST_SHARE = 1e-6
+LEAST_DOUBLINGS = 1e-6
+LEAST_LENGTH = 1e-30
 _FRACTIONS = {-1: "½", -2: "¼", -3: "⅛"}
 
 
@@ -41,8 +45,13 @@ class ColourScale:
     @property
     def ends(self) -> Range:
         """The range on the scale that is drawn: doublings for ratios."""
-        low, high = self.kind.levels(np.array(self.range))
-        return float(low), float(high)
+        low, high = self.kind.levels(np.array(self.range, dtype=np.float64)).tolist()
+        # A range of next to nothing is widened: neither VTK nor the ticks can divide by it.
+        least = max(abs(low), abs(high)) * LEAST_SHARE
+        least = max(least, LEAST_DOUBLINGS if self.kind.is_ratio else LEAST_LENGTH)
+        if high - low < least:
+            low, high = 0.5 * (low + high - least), 0.5 * (low + high + least)
+        return low, high
 
     def colours(self, levels: ArrayLike) -> NDArray[np.uint8]:
         """Return the (k, 3) colours of levels."""
@@ -67,7 +76,8 @@ class ColourScale:
             powers = range(math.ceil(low - 1e-6), math.floor(high + 1e-6) + 1)
             found = [(float(power), _power_text(power)) for power in powers if power % step == 0]
         else:
-            values = _round_values(*self.range)
+            ratios = self.kind.is_ratio
+            values = _round_values(*((2.0**low, 2.0**high) if ratios else (low, high)))
             levels = self.kind.levels(np.array(values)).tolist()
             found = list(zip(levels, [f"{value:.6g}" for value in values], strict=True))
         return [Tick((level - low) / (high - low), text) for level, text in found]

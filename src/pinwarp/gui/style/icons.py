@@ -27,10 +27,9 @@ def icon(name: str, colour: str = "") -> QIcon:
         for size in (20, 40, 64):
             pixmap = QPixmap(QSize(size, size))
             pixmap.fill(Qt.GlobalColor.transparent)
-            painter = QPainter(pixmap)
-            painter.setOpacity(opacity)
-            renderer.render(painter)
-            painter.end()
+            with QPainter(pixmap) as painter:
+                painter.setOpacity(opacity)
+                renderer.render(painter)
             result.addPixmap(pixmap, mode)
     return result
 

@@ -6,9 +6,7 @@ A new column, such as one of a quality, is one entry in :data:`COLUMNS` and a ca
 
 from __future__ import annotations
 
-import functools
 import math
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -17,13 +15,14 @@ from qtpy.QtGui import QIcon
 
 from pinwarp.core.errors import LandmarkError
 from pinwarp.core.findings import Finding, FindingKind
-from pinwarp.core.landmarks import Landmark, LandmarkState, Position, Side, as_position
+from pinwarp.core.landmarks import Landmark, LandmarkState, Side
 from pinwarp.gui.painted.markers import state_icon
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.icons import kept_icon
-from pinwarp.io.csv_cells import as_sentence, number_of
 from pinwarp.session import edits
+from pinwarp.session.coordinates import position_text, typed_position
 from pinwarp.session.judging.quality import NamedFinding
+from pinwarp.session.naming import natural
 from pinwarp.session.session import Session
 from pinwarp.session.warp.solver import is_rounding
 
@@ -148,26 +147,6 @@ def number_column(
     )
 
 
-@functools.lru_cache(maxsize=4096)
-def natural(text: str) -> tuple[tuple[int, int, str], ...]:
-    """Return a key that sorts numbers in names as numbers.
-
-    Examples
-    --------
-    >>> sorted(["p10", "p9", "P1"], key=natural)
-    ['P1', 'p9', 'p10']
-    """
-    parts = re.findall(r"[0-9]+|[^0-9]+", text.casefold())
-    return tuple((0, int(p), "") if p.isascii() and p.isdigit() else (1, 0, p) for p in parts)
-
-
-def position_text(position: Position | None, unit: str) -> str:
-    """Return a position for people."""
-    if position is None:
-        return "not placed"
-    return "({:.5g}, {:.5g}, {:.5g})".format(*position) + f" {unit}".rstrip()
-
-
 def _name_tip(row: Row) -> str:
     landmark = row.landmark
     lock = ", locked" if landmark.locked else ""
@@ -245,38 +224,6 @@ def _side_column(side: Side) -> Column:
         short_title=side.value[0].upper(),
         widest="→",
     )
-
-
-def typed_position(landmark: Landmark, side: Side, axis: int, text: str) -> Position:
-    """Return where a landmark is after a number was typed for one axis, or three for all.
-
-    Raises
-    ------
-    LandmarkError
-        With the reason why this is no position.
-
-    Examples
-    --------
-    >>> typed_position(Landmark("fovea", (1, 2, 3)), Side.SOURCE, 2, "4,5")
-    (1.0, 2.0, 4.5)
-    >>> typed_position(Landmark("fovea"), Side.SOURCE, 0, "1 2 3")
-    (1.0, 2.0, 3.0)
-    """
-    cells = re.split(r"[;\s]+", text.strip(" \t;()[]"))
-    before = landmark.position(side)
-    try:
-        numbers = [number_of(cell, ";") for cell in cells]
-    except ValueError as error:
-        raise LandmarkError(f"{as_sentence(str(error))} Type one such as 12.5.") from None
-    if len(numbers) == 3:
-        return as_position(numbers)
-    if len(numbers) != 1:
-        raise LandmarkError("Type one number, or three for x, y and z.")
-    if before is None:
-        raise LandmarkError(
-            f"{landmark.name} is not placed on the {side.value} yet: type all three, as in 1 2 3."
-        )
-    return as_position([numbers[0] if i == axis else before[i] for i in range(3)])
 
 
 def _coordinate_column(side: Side, short: str, axis: int) -> Column:

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable
 
 from qtpy.QtCore import QEvent, QPoint, Qt
-from qtpy.QtGui import QAction, QKeySequence, QResizeEvent
+from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QMenu, QVBoxLayout, QWidget
 
-from pinwarp.gui.findings.panel import FindingsPanel
 from pinwarp.gui.style.icons import icon
 from pinwarp.gui.table.table import LandmarkTable
 
 # The words of the row menu, by the keys of the actions; "focus" is whatever the key F does.
-_ROW_MENU = (
-    "rename rename_many note - toggle_enabled toggle_locked toggle_role - swap_destinations - "
-    "focus - copy paste - delete_side delete_landmark"
-)
 
 
 class FilterLine(QLineEdit):
@@ -26,12 +21,15 @@ class FilterLine(QLineEdit):
         super().__init__()
         self._rows = rows
         self.setPlaceholderText("Filter by name or state")
-        self.setToolTip(
-            "Words that the name, note or state contains, such as: incomplete, suspect (Ctrl+F)"
-        )
         self.setAccessibleName("Filter the landmarks")
         self.setClearButtonEnabled(True)
         self.addAction(icon("search"), QLineEdit.ActionPosition.LeadingPosition)
+
+    def name_key(self, key: str) -> None:
+        """Say which key goes here."""
+        self.setToolTip(
+            f"Words that the name, note or state contains, such as: incomplete, suspect ({key})"
+        )
 
     def event(self, event: QEvent) -> bool:
         """Take Esc before the window does."""
@@ -52,23 +50,18 @@ class FilterLine(QLineEdit):
 
 
 class LandmarkPanel(QWidget):
-    """The filter above the table, and below it what was noticed about the pairs.
+    """The filter above the table, and room below it.
 
     Parameters
     ----------
-    table, findings
-        The table and the list.
-    actions
-        The window's actions by key, of which the menus are made.
+    table
+        The table. Its menus are filled by the window.
     """
 
-    def __init__(
-        self, table: LandmarkTable, findings: FindingsPanel, actions: Mapping[str, QAction]
-    ) -> None:
+    def __init__(self, table: LandmarkTable) -> None:
         super().__init__()
         self.table = table
-        self.findings = findings
-        self._actions = actions
+        self._share_room: Callable[[int], None] | None = None
         self.filter = FilterLine(table)
         self.count = QLabel()
         self.count.hide()
@@ -81,12 +74,10 @@ class LandmarkPanel(QWidget):
         column.setSpacing(4)
         column.addLayout(row)
         column.addWidget(table, 1)
-        column.addWidget(findings)
         self.row_menu = QMenu(table)
         self.header_menu = QMenu(table)
         self.original_order = self.header_menu.addAction("Original &Order")
         self.original_order.triggered.connect(lambda: table.restore_order())
-        self.header_menu.addAction(actions["show_coordinates"])
         self._connect()
 
     def _connect(self) -> None:
@@ -98,12 +89,18 @@ class LandmarkPanel(QWidget):
         table.customContextMenuRequested.connect(self._show_row_menu)
         header.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
         header.customContextMenuRequested.connect(self._show_header_menu)
-        self._actions["show_coordinates"].toggled.connect(table.show_coordinates)
+
+    def put_below(self, widget: QWidget, set_room: Callable[[int], None]) -> None:
+        """Put a widget below the table; it is told how high it may be, so that rows are left."""
+        self._share_room = set_room
+        self.layout().addWidget(widget)
+        set_room(self.height() // 3)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Leave most of the height to the table."""
         super().resizeEvent(event)
-        self.findings.set_room(self.height() // 3)
+        if self._share_room is not None:
+            self._share_room(self.height() // 3)
 
     def start_filtering(self) -> None:
         """Let the user type a filter."""
@@ -125,19 +122,7 @@ class LandmarkPanel(QWidget):
         self.count.setText(f"{order.rowCount()} of {order.sourceModel().rowCount()}")
 
     def _show_row_menu(self, at: QPoint) -> None:
-        menu, actions = self.row_menu, dict(self._actions)
-        # Whoever has the key F looks at what is selected.
-        key = QKeySequence("F")
-        focus = [action for action in actions.values() if action.shortcut() == key]
-        menu.clear()
-        for word in _ROW_MENU.split():
-            if word == "-":
-                menu.addSeparator()
-            elif word == "focus":
-                menu.addActions(focus)
-            else:
-                menu.addAction(actions[word])
-        menu.popup(self.table.viewport().mapToGlobal(at))
+        self.row_menu.popup(self.table.viewport().mapToGlobal(at))
 
     def _show_header_menu(self, at: QPoint) -> None:
         self.original_order.setEnabled(self.table.order.sortColumn() >= 0)

@@ -2,43 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
-from qtpy.QtGui import QAction
 from qtpy.QtWidgets import QInputDialog
 
 from pinwarp.core.errors import PinwarpError
-from pinwarp.core.landmarks import Landmark, Role
-from pinwarp.gui.placing.hand import ALL_LOCKED
+from pinwarp.core.landmarks import Landmark, Role, Side
+from pinwarp.gui.capability.action import Action
+from pinwarp.gui.capability.capability import Capability, Panel
+from pinwarp.gui.placing.hand import Hand
 from pinwarp.gui.table.columns import COLUMNS
 from pinwarp.gui.table.model import LandmarkModel
 from pinwarp.gui.table.panel import LandmarkPanel
 from pinwarp.gui.table.rename_dialog import RenameDialog
 from pinwarp.gui.table.spreadsheet import Spreadsheet
+from pinwarp.gui.table.table import LandmarkTable
 from pinwarp.gui.tasks.dialogs import Dialogs
+from pinwarp.gui.warp.warps import Warps
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.guide import next_incomplete
 from pinwarp.session.naming import in_words
 from pinwarp.session.session import Session
 
-_NEED_SELECTION = (
-    *("rename", "rename_many", "note", "copy", "move_up", "move_down"),
-    *("toggle_enabled", "toggle_locked", "toggle_role"),
-)
 
-
-class TablePresenter:
-    """Everything between the editor and the table that is not drawing.
+class TablePresenter(Capability):
+    """The table of landmarks, and everything between it and the editor.
 
     Parameters
     ----------
     editor
         The truth.
-    model, panel
-        The table.
-    actions
-        The window's actions by key.
+    warps
+        What stands in the table's columns.
+    hand
+        Whether landmarks may be moved.
     dialogs
         Tells what could not be pasted.
     say
@@ -48,46 +46,172 @@ class TablePresenter:
     def __init__(
         self,
         editor: Editor,
-        model: LandmarkModel,
-        panel: LandmarkPanel,
-        actions: Mapping[str, QAction],
+        warps: Warps,
+        hand: Hand,
         dialogs: Dialogs,
         say: Callable[[str], None],
     ) -> None:
         self._editor = editor
-        self._panel = panel
-        self._actions = actions
+        self._warps = warps
+        self._hand = hand
         self._say = say
+        self.model = LandmarkModel()
+        self.table = LandmarkTable(self.model)
+        self.model.setParent(self.table)
+        self.panel = LandmarkPanel(self.table)
+        self.panels = (Panel("landmarks", "Landmarks", self.panel),)
+        self.menus = {"row": self.panel.row_menu, "header": self.panel.header_menu}
         self._spreadsheet = Spreadsheet(editor, dialogs, say)
+        self._filter = Action(
+            "filter", "&Filter Landmarks", self.panel.start_filtering, at="Edit.82", keys="Ctrl+F"
+        )
+        self.panel.filter.name_key(self._filter.keys)
+        self._toggle_enabled, self._toggle_locked, self._toggle_role = self._of_states()
+        self.actions = (
+            *(self._toggle_enabled, self._toggle_locked, self._toggle_role),
+            *self._of_words(),
+            *self._of_rows(),
+        )
+        self._connect()
+        self.model.show_session(editor.session)
+        self._on_change()
+
+    def _connect(self) -> None:
+        editor, model, table = self._editor, self.model, self.table
         model.edit_requested.connect(self._on_edit)
         model.enable_requested.connect(lambda name, on: self._set_enabled([name], on))
         model.reorder_requested.connect(self._on_reorder)
-        panel.table.lock_requested.connect(self._set_locked)
-        panel.table.refused.connect(say)
-        does = {
-            "rename": self.rename,
-            "rename_many": self.rename_many,
-            "note": self.edit_note,
-            "toggle_enabled": self.toggle_enabled,
-            "toggle_locked": self.toggle_locked,
-            "toggle_role": self.toggle_role,
-            "copy": lambda: self._spreadsheet.copy(self._selected()),
-            "paste": self.paste,
-            "move_up": lambda: self.move_rows(-1),
-            "move_down": lambda: self.move_rows(1),
-            "next_incomplete": self.next_incomplete,
-            "filter": panel.start_filtering,
-        }
-        for key, function in does.items():
-            actions[key].triggered.connect(lambda _checked=False, call=function: call())
+        table.lock_requested.connect(self._set_locked)
+        table.refused.connect(self._say)
+        table.selection_requested.connect(
+            lambda names, side: editor.select(*names, side=Side(side) if side else None)
+        )
+        editor.session_changed.connect(model.show_session)
         editor.session_changed.connect(self._on_change)
         editor.selection_changed.connect(self._on_change)
-        self._on_change()
+        self._warps.figures_changed.connect(model.show_result)
+
+    def _of_states(self) -> tuple[Action, Action, Action]:
+        return (
+            Action(
+                "toggle_enabled",
+                "&Disable",
+                self.toggle_enabled,
+                at="Edit.41 row.21",
+                keys="Ctrl+D",
+                tip="Let pairs take part, or not",
+                possible=self._is_selected,
+            ),
+            Action(
+                "toggle_locked",
+                "&Lock",
+                self.toggle_locked,
+                at="Edit.42 row.22",
+                keys="Ctrl+L",
+                tip="Protect from being moved by accident",
+                possible=self._is_selected,
+            ),
+            Action(
+                "toggle_role",
+                "Make &Passenger",
+                self.toggle_role,
+                at="Edit.43 row.23",
+                keys="Ctrl+Shift+P",
+                tip="Carried by the warp, not solved for",
+                possible=self._is_selected,
+            ),
+        )
+
+    def _of_words(self) -> tuple[Action, ...]:
+        return (
+            Action(
+                "copy",
+                "&Copy",
+                lambda: self._spreadsheet.copy(self._selected()),
+                at="Edit.21 row.51",
+                keys="Ctrl+C",
+                tip="As a table for a spreadsheet",
+                possible=self._is_selected,
+            ),
+            Action(
+                "paste",
+                "&Paste",
+                self.paste,
+                at="Edit.22 row.52",
+                keys="Ctrl+V",
+                tip="Landmarks from a spreadsheet or CSV text",
+            ),
+            Action(
+                "rename",
+                "Re&name Landmark",
+                self.rename,
+                at="Edit.31 row.11",
+                keys="F2",
+                possible=self._is_selected,
+            ),
+            Action(
+                "rename_many",
+                "Rename &Several…",
+                self.rename_many,
+                at="Edit.32 row.12",
+                keys="Ctrl+F2",
+                tip="By a pattern, or find and replace",
+                possible=self._is_selected,
+            ),
+            Action(
+                "note",
+                "No&te…",
+                self.edit_note,
+                at="Edit.33 row.13",
+                keys="Shift+F2",
+                tip="Write something down about a landmark",
+                possible=self._is_selected,
+            ),
+        )
+
+    def _of_rows(self) -> tuple[Action, ...]:
+        return (
+            Action(
+                "move_up",
+                "Move Row &Up",
+                lambda: self.move_rows(-1),
+                at="Edit.51",
+                keys="Alt+Up",
+                possible=self._is_selected,
+            ),
+            Action(
+                "move_down",
+                "Move Row Do&wn",
+                lambda: self.move_rows(1),
+                at="Edit.52",
+                keys="Alt+Down",
+                possible=self._is_selected,
+            ),
+            self._filter,
+            Action(
+                "next_incomplete",
+                "Next &Incomplete Landmark",
+                self.next_incomplete,
+                at="Place.13",
+                keys="N",
+            ),
+            Action(
+                "show_coordinates",
+                "Show &Coordinates",
+                switches=self.table.show_coordinates,
+                checked=lambda: self.table.shows_coordinates,
+                at="View.51 header.12",
+                keys="Ctrl+Shift+C",
+                tip="In the table, to edit",
+            ),
+        )
 
     def shut_down(self) -> None:
         """Let go of the editor."""
+        self._editor.session_changed.disconnect(self.model.show_session)
         self._editor.session_changed.disconnect(self._on_change)
         self._editor.selection_changed.disconnect(self._on_change)
+        self._warps.figures_changed.disconnect(self.model.show_result)
 
     # What is selected, and what can be done with it
 
@@ -96,22 +220,20 @@ class TablePresenter:
         session = self._editor.committed
         names = set(self._editor.selection.names)
         chosen = [landmark for landmark in session.landmarks if landmark.name in names]
-        row = {mark.name: self._panel.table.index_of(mark.name).row() for mark in chosen}
+        row = {mark.name: self.table.index_of(mark.name).row() for mark in chosen}
         return sorted(chosen, key=lambda landmark: row[landmark.name])
+
+    def _is_selected(self) -> bool:
+        return bool(self._editor.selection.names)
 
     def _on_change(self, _changed: object = None) -> None:
         """Let the actions say what they would do to the selection."""
+        self.table.show_selection(self._editor.selection)
         names = set(self._editor.selection.names)
         chosen = [mark for mark in self._editor.committed.landmarks if mark.name in names]
-        for key in _NEED_SELECTION:
-            self._actions[key].setEnabled(bool(chosen))
-        texts = {
-            "toggle_enabled": "&Enable" if _all_disabled(chosen) else "&Disable",
-            "toggle_locked": "Un&lock" if _all_locked(chosen) else "&Lock",
-            "toggle_role": "Make &Pair" if _all_passengers(chosen) else "Make &Passenger",
-        }
-        for key, text in texts.items():
-            self._actions[key].setText(text)
+        self._toggle_enabled.reword("&Enable" if _all_disabled(chosen) else "&Disable")
+        self._toggle_locked.reword("Un&lock" if _all_locked(chosen) else "&Lock")
+        self._toggle_role.reword("Make &Pair" if _all_passengers(chosen) else "Make &Passenger")
 
     # Names, notes, typed numbers
 
@@ -121,15 +243,15 @@ class TablePresenter:
         if len(names) > 1:
             self.rename_many()
         elif names:
-            self._panel.reveal(names)
-            self._panel.table.rename(names[0])
+            self.panel.reveal(names)
+            self.table.rename(names[0])
 
     def rename_many(self) -> None:
         """Ask for a pattern and rename the selected landmarks by it."""
         names = [landmark.name for landmark in self._selected()]
         editor = self._editor
         dialog = RenameDialog(
-            names, lambda new: edits.rename_many(editor.committed, new), self._panel.window()
+            names, lambda new: edits.rename_many(editor.committed, new), self.panel.window()
         )
 
         def accept() -> None:
@@ -145,7 +267,7 @@ class TablePresenter:
     def edit_note(self) -> None:
         """Ask for the note of the first selected landmark."""
         landmark = self._selected()[0]
-        dialog = QInputDialog(self._panel.window())
+        dialog = QInputDialog(self.panel.window())
         dialog.setOption(QInputDialog.InputDialogOption.UsePlainTextEditForTextInput)
         dialog.setWindowTitle(f"Note on {landmark.name}")
         dialog.setLabelText(f"What to remember about {landmark.name}:")
@@ -162,7 +284,7 @@ class TablePresenter:
     def _on_edit(self, column: int, name: str, text: str) -> None:
         edit, label = COLUMNS[column].edit, COLUMNS[column].label
         if COLUMNS[column].side is not None and self._editor.view.locked:
-            self._say(ALL_LOCKED)
+            self._say(self._hand.all_locked)
         elif edit is not None:
             self._commit_renamed(lambda session: edit(session, name, text), label.format(name))
 
@@ -223,7 +345,7 @@ class TablePresenter:
 
     def move_rows(self, step: int) -> None:
         """Move the selected rows one up or down in the session's order."""
-        if not self._panel.table.order.is_original:
+        if not self.table.order.is_original:
             self._say("Rows move in the original order only: clear the filter and the sorting.")
             return
         session, names = self._editor.committed, self._editor.selection.names
@@ -236,7 +358,7 @@ class TablePresenter:
         """Bring in rows from the clipboard and show them."""
         names = self._spreadsheet.paste()
         if names:
-            self._panel.reveal(names)
+            self.panel.reveal(names)
             self._editor.select(*names)
 
     # The next to do
@@ -254,7 +376,7 @@ class TablePresenter:
                 else "There are no landmarks yet."
             )
             return
-        self._panel.reveal([landmark.name])
+        self.panel.reveal([landmark.name])
         self._editor.select(landmark.name)
         self._say(f"{landmark.name}: {landmark.state.value}.")
 

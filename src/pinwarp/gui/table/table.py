@@ -21,7 +21,7 @@ from pinwarp.gui.table.cells import FigureCells, LandmarkCells, NameCells
 from pinwarp.gui.table.columns import COLUMNS, LOCKED, NAME, column_number
 from pinwarp.gui.table.model import LandmarkModel
 from pinwarp.gui.table.order import LandmarkOrder
-from pinwarp.session.editor import Selection
+from pinwarp.session.view import Selection
 
 __all__ = ["LandmarkModel", "LandmarkTable"]
 
@@ -102,6 +102,7 @@ class LandmarkTable(QTableView):
 
     def show_coordinates(self, shown: bool) -> None:
         """Show or hide the columns that are there on demand."""
+        self.shows_coordinates = shown
         self._fitting = True
         for number, column in enumerate(COLUMNS):
             if column.on_demand:
@@ -213,9 +214,9 @@ class LandmarkTable(QTableView):
         return QModelIndex()
 
     def rename(self, name: str) -> None:
-        """Open the name of a landmark for typing."""
+        """Open the name of a landmark for typing; what is being typed already stays open."""
         index = self.index_of(name)
-        if index.isValid():
+        if index.isValid() and self.state() != QAbstractItemView.State.EditingState:
             self.setFocus()
             self.scrollTo(index)
             self.edit(index)
@@ -252,11 +253,10 @@ class LandmarkTable(QTableView):
         if self.order.rowCount():
             return
         hint = "No landmark matches\nthe filter" if self.order.is_filtered else _EMPTY_HINT
-        painter = QPainter(self.viewport())
-        painter.setPen(theme.quiet_text_colour())
-        room = self.viewport().rect().adjusted(12, 12, -12, -12)
-        painter.drawText(_upper_half(room), Qt.AlignmentFlag.AlignCenter, hint)
-        painter.end()
+        with QPainter(self.viewport()) as painter:
+            painter.setPen(theme.quiet_text_colour())
+            room = self.viewport().rect().adjusted(12, 12, -12, -12)
+            painter.drawText(_upper_half(room), Qt.AlignmentFlag.AlignCenter, hint)
 
 
 def _width(widget: QWidget, text: str) -> int:

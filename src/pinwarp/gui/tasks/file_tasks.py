@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Generic, TypeVar
-
-from psygnal import Signal
 
 from pinwarp.core.errors import PinwarpError, words_of
 from pinwarp.gui.tasks.dialogs import Dialogs
@@ -16,6 +15,7 @@ from pinwarp.io.file_names import SESSION_SUFFIX
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
 from pinwarp.io.meshes import MESH_SUFFIXES
 from pinwarp.session.editor import Editor
+from pinwarp.session.signals import isolated
 
 MESH_FILES = "Meshes ({});;All files (*)".format(" ".join(f"*{suffix}" for suffix in MESH_SUFFIXES))
 SESSION_FILES = f"Sessions (*{SESSION_SUFFIX});;All files (*)"
@@ -45,7 +45,7 @@ class FileTasks(Generic[Asking]):
         Asks and tells.
     """
 
-    said = Signal(str)
+    said = isolated(str)
 
     def __init__(self, editor: Editor, jobs: SlowJob, stepped: SteppedJob, dialogs: Asking) -> None:
         self._editor = editor
@@ -126,4 +126,5 @@ class FileTasks(Generic[Asking]):
             file.path for file in (session.destination, session.source) if file is not None
         ]
         path = self._editor.path or (files[0] if files else None)
-        return path.parent if path is not None else Path.home()
+        # Unlike Path.home, this never fails where nobody knows the home folder.
+        return path.parent if path is not None else Path(os.path.expanduser("~"))

@@ -9,7 +9,7 @@ from pinwarp.core.alignment import Similarity
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.scene.camera_pose import Matrix, Pose, inverse, relation_of
 from pinwarp.gui.views.canvas import Canvas
-from pinwarp.session.editor import LinkMode
+from pinwarp.session.view import LinkMode
 
 
 class CameraLink:
@@ -111,6 +111,9 @@ class CameraLink:
         self._poses[side] = pose
         other = self._poses[side.other]
         theirs = pose.mapped(relation)
+        if not theirs.is_proper:
+            # So far out that there is no such place.
+            return
         if self._mode is LinkMode.ROTATION:
             theirs = other.turned(theirs.frame)
         self._busy = True

@@ -22,16 +22,19 @@ from pinwarp.gui.painted.marker_layer import MarkerLayer
 from pinwarp.gui.scene.camera_pose import Matrix, Pose, best_frame, fitted
 from pinwarp.gui.scene.drawables import Drawable, GridLines, Legend, Motion, Overlay
 from pinwarp.gui.scene.scene import Scene
+from pinwarp.gui.scene.sight import through_ball
 from pinwarp.gui.style import theme
-from pinwarp.gui.views.fast_view import FastView
+from pinwarp.gui.views.sighted_view import SightedView
 
 Kind = TypeVar("Kind", bound=Drawable)
 
 # A frame slower than this is replaced by a stand-in's while something moves.
 SLOW_FRAME = 0.030
+# How near and how far a hand may bring the camera to what it looks at, in diagonals of the bone.
+NEAREST, FURTHEST = 1e-3, 50.0
 
 
-class Canvas(FastView):
+class Canvas(SightedView):
     """Shows a scene; knows where things are on the screen.
 
     Parameters
@@ -47,7 +50,6 @@ class Canvas(FastView):
     def __init__(self, side: Side, surfaces: Surfaces, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.side = side
-        self.is_placing_camera = False
         self._stage = DrawnScene(self, side, surfaces)
         self.layer = MarkerLayer(self, self)
         self.map_legend = PaintedLegend(self)
@@ -183,17 +185,20 @@ class Canvas(FastView):
         aspect = max(1, self.width()) / max(1, self.height())
         self.set_pose(fitted(points, frame, self.camera.GetViewAngle(), aspect))
 
-    def set_pose(self, pose: Pose) -> None:
-        """Put the camera somewhere; :attr:`is_placing_camera` tells that no hand moves it."""
-        camera, self.is_placing_camera = self.camera, True
-        camera.SetFocalPoint(pose.focal_point)
-        camera.SetPosition(pose.position)
-        camera.SetViewUp(pose.up)
-        camera.SetParallelScale(pose.parallel_scale)
-        camera.is_set = True
-        self.is_placing_camera = False
-        self.renderer.ResetCameraClippingRange()
-        self.update()
+    def stay_in_reach(self) -> None:
+        """Bring the camera back where a hand has taken it nearer or further than is of use."""
+        bone, pose = self.bone, Pose.of(self.camera)
+        if bone is None:
+            return
+        if not pose.is_proper:
+            self.look_at_all()
+            return
+        size = float(np.linalg.norm(bone.bounds_size)) or 1.0
+        distance = float(np.clip(pose.distance, NEAREST * size, FURTHEST * size))
+        if distance != pose.distance:
+            # Not as a placed pose: a linked camera comes along.
+            self.camera.SetPosition(pose.focused(pose.focal_point, distance).position)
+            self.renderer.ResetCameraClippingRange()
 
     def view_key(self) -> Hashable:
         """Return what decides which landmarks are hidden: camera, size and mesh."""
@@ -202,75 +207,47 @@ class Canvas(FastView):
         # Not its time stamp: the clipping range changes with every warp, and hides nothing.
         pose = (camera.GetPosition(), camera.GetFocalPoint(), camera.GetViewUp())
         lens = (camera.GetViewAngle(), camera.GetParallelScale(), camera.GetParallelProjection())
-        return (pose, lens, self.width(), self.height(), id(self.surface), share)
-
-    @property
-    def unit_per_pixel(self) -> float:
-        """The length that a logical pixel shows where the camera looks, in mesh units."""
-        camera, height = self.camera, max(1, self.height())
-        if camera.GetParallelProjection():
-            return 2 * camera.GetParallelScale() / height
-        return 2 * camera.GetDistance() * np.tan(np.radians(camera.GetViewAngle()) / 2) / height
-
-    def _projection(self) -> NDArray:
-        aspect = max(1, self.width()) / max(1, self.height())
-        matrix = self.camera.GetCompositeProjectionTransformMatrix(aspect, -1, 1)
-        return np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
-
-    def project(self, points: NDArray) -> NDArray:
-        """Return where (n, 3) positions are on the screen: (n, 2) logical pixels."""
-        clip = np.column_stack([points, np.ones(len(points))]) @ self._projection().T
-        # What lies behind the camera must not appear in front of it.
-        depth = np.where(clip[:, 3] > 1e-12, clip[:, 3], np.nan)
-        x = (clip[:, 0] / depth + 1) / 2 * self.width()
-        y = (1 - clip[:, 1] / depth) / 2 * self.height()
-        return np.nan_to_num(np.column_stack([x, y]), nan=-1e6)
-
-    def _ray(self, at: QPointF) -> tuple[NDArray, NDArray]:
-        """Return the ends of the line of sight through a place on the screen."""
-        x = 2 * at.x() / self.width() - 1
-        y = 1 - 2 * at.y() / self.height()
-        near_far = np.array([[x, y, -1, 1], [x, y, 1, 1]]) @ np.linalg.inv(self._projection()).T
-        near, far = near_far[:, :3] / near_far[:, 3:]
-        return near, far
+        return (pose, lens, self.width(), self.height(), self.surface, share)
 
     def pick(self, at: QPointF) -> NDArray | None:
         """Return the position on the surface under a place on the screen, None beside it."""
-        if self.surface is None:
+        ray = self._ray(at)
+        if self.surface is None or ray is None:
             return None
-        near, far = self._ray(at)
+        part = through_ball(*ray, np.array(self.surface.polydata.center), self.surface.diagonal)
+        if part is None:
+            return None
+        near, far = part
         start = near if self.section is None else self.section.entry(near, far)
         return self.surface.first_hit(start, far) if start is not None else None
 
-    def in_view_plane(self, at: QPointF, through: NDArray) -> NDArray:
-        """Return the position under a place on the screen, as deep in the view as another one."""
-        near, far = self._ray(at)
-        along = np.array(self.camera.direction)
-        towards = far - near
-        return near + towards * float((through - near) @ along / (towards @ along))
+    @property
+    def is_bone_lost(self) -> bool:
+        """Whether there is a bone but nothing of it in the view."""
+        return self.bone is not None and not self.is_bone_seen
 
-    def view_axes(self) -> tuple[NDArray, NDArray]:
-        """Return the unit vectors that point right and up on the screen."""
-        along, up = np.array(self.camera.direction), np.array(self.camera.up)
-        right = np.cross(along, up)
-        right /= np.linalg.norm(right)
-        return right, np.cross(right, along)
-
-    def pixels_per_unit(self, position: NDArray) -> float:
-        """Return how many logical pixels a mesh unit takes at a position."""
-        right, _ = self.view_axes()
-        size = self.surface.diagonal * 0.01 if self.surface is not None else 1.0
-        a, b = self.project(np.array([position, position + right * size]))
-        return float(np.linalg.norm(b - a)) / size
+    @property
+    def is_bone_seen(self) -> bool:
+        """Whether any of the bone is in the view, as far as a look at some of its places tells."""
+        bone, sight = self.bone, self.sight
+        if bone is None or sight is None:
+            return False
+        places = sight.places(np.asarray(bone.points)[:: max(1, bone.n_points // 1000)])
+        if (np.abs(places) <= 1).all(axis=1).any():
+            return True
+        # From so near that it may be seen between those.
+        shares = (0.05, 0.25, 0.5, 0.75, 0.95)
+        spots = [QPointF(self.width() * x, self.height() * y) for x in shares for y in shares]
+        return any(self.pick(spot) is not None for spot in spots)
 
     def behind_surface(self, positions: NDArray) -> NDArray[np.bool_]:
         """Return which positions the mesh hides from the camera."""
-        hidden = np.zeros(len(positions), dtype=bool)
-        if self.surface is None:
+        hidden, sight = np.zeros(len(positions), dtype=bool), self.sight
+        if self.surface is None or sight is None:
             return hidden
-        eye = np.array(self.camera.position)
-        if self.camera.parallel_projection:
-            eye = eye + np.array(self.camera.direction) * -1e3 * self.surface.diagonal
+        eye = sight.eye
+        if sight.is_parallel:
+            eye = eye - sight.along * 1e3 * self.surface.diagonal
         for i, position in enumerate(positions):
             # What is clipped away neither hides nor can be grabbed.
             start = eye if self.section is None else self.section.entry(eye, position)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from functools import partial
 
 import numpy as np
 from qtpy.QtCore import QObject, Qt
-from qtpy.QtGui import QAction, QActionGroup
-from qtpy.QtWidgets import QHBoxLayout, QSizePolicy, QSlider, QToolBar, QWidget
+from qtpy.QtGui import QAction
+from qtpy.QtWidgets import QSlider
 
 from pinwarp.core.alignment import Similarity
 from pinwarp.core.landmarks import Landmark, Side
+from pinwarp.gui.capability.action import Action, one_of, tool
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.scene.camera_pose import (
     Matrix,
     Pose,
@@ -24,12 +27,26 @@ from pinwarp.gui.style.icons import icon
 from pinwarp.gui.views.camera_link import CameraLink
 from pinwarp.gui.views.canvas import Canvas
 from pinwarp.gui.views.scenes import Scenes
-from pinwarp.session.editor import Editor, LinkMode
+from pinwarp.session.editor import Editor
+from pinwarp.session.view import LinkMode
 
 LINK_ACTIONS = {
     LinkMode.LINKED: "link_linked",
     LinkMode.ROTATION: "link_rotation",
     LinkMode.FREE: "link_free",
+}
+_LINKS = {
+    LinkMode.LINKED: ("&Linked", "Both move, seen from the same side", 11),
+    LinkMode.ROTATION: ("&Rotation Only", "Pan and zoom are of their own", 12),
+    LinkMode.FREE: ("&Free", "Each view moves by itself", 13),
+}
+_SIDES = {
+    StandardView.FRONT: ("&Front View", 11),
+    StandardView.BACK: ("&Back View", 12),
+    StandardView.LEFT: ("&Left View", 21),
+    StandardView.RIGHT: ("&Right View", 22),
+    StandardView.TOP: ("&Top View", 31),
+    StandardView.BOTTOM: ("Botto&m View", 32),
 }
 # Smallest and largest landmark, in logical pixels.
 MARKER_RADII = (4.0, 12.0)
@@ -37,8 +54,8 @@ MARKER_RADII = (4.0, 12.0)
 CLOSE_UP = 0.4
 
 
-class ViewControls(QObject):
-    """Wires the View menu's actions to the views.
+class ViewControls(Capability):
+    """The View menu: cameras and looks.
 
     Parameters
     ----------
@@ -48,8 +65,6 @@ class ViewControls(QObject):
         One per side.
     scenes
         What they show.
-    actions
-        By their keys.
     parent
         The window.
     """
@@ -59,55 +74,127 @@ class ViewControls(QObject):
         editor: Editor,
         views: Mapping[Side, Canvas],
         scenes: Scenes,
-        actions: Mapping[str, QAction],
         parent: QObject,
     ) -> None:
-        super().__init__(parent)
         self._editor = editor
         self._views = views
-        self._actions = actions
         self._fitted_for: tuple[Landmark, ...] | None = None
         self._fit: Similarity | None = None
         self.section_slider = _section_slider()
         self._surfaces = self._surfaces_now()
         self._pairs = 0
         self.link = CameraLink(views, self.pairing_fit)
-        self._connect()
+        self._link_next = Action(
+            "link_next",
+            "&Next Camera Link",
+            self._next_link,
+            at="cameras.21 tools.42",
+            keys="K",
+            icon=LINK_ACTIONS[editor.view.link],
+        )
+        self.actions = (
+            self._link_next,
+            *one_of(map(self._link_action, LinkMode), parent),
+            *self._of_cameras(),
+            *self._of_looks(),
+        )
+        self.section_slider.valueChanged.connect(self._on_section_moved)
+        editor.view_changed.connect(self._on_view)
         scenes.shown.connect(self._on_shown)
         self._on_view()
 
-    def _connect(self) -> None:
-        actions, editor = self._actions, self._editor
-        links = QActionGroup(self)
-        for mode, key in LINK_ACTIONS.items():
-            links.addAction(actions[key])
-            self._on_trigger(key, lambda mode=mode: editor.look(link=mode))
-        self._on_trigger("link_next", self._next_link)
-        self._on_trigger("fit", self.fit_all)
-        self._on_trigger("focus", self.focus)
-        for view in StandardView:
-            self._on_trigger(f"view_{view.value}", lambda view=view: self.look_from(view))
-        actions["arrows"].toggled.connect(lambda on: editor.look(arrows=on))
-        actions["wireframe"].toggled.connect(lambda on: editor.look(wireframe=on))
-        actions["section"].toggled.connect(self._on_section)
-        self._on_trigger("markers_larger", lambda: self._resize_markers(1))
-        self._on_trigger("markers_smaller", lambda: self._resize_markers(-1))
-        self.section_slider.valueChanged.connect(self._on_section_moved)
-        editor.view_changed.connect(self._on_view)
+    def _link_action(self, mode: LinkMode) -> Action:
+        text, tip, place = _LINKS[mode]
+        return Action(
+            LINK_ACTIONS[mode],
+            text,
+            lambda: self._editor.look(link=mode),
+            checked=lambda: self._editor.view.link is mode,
+            at=f"cameras.{place}",
+            tip=tip,
+        )
 
-    def _on_trigger(self, key: str, call: Callable[..., object]) -> None:
-        # Qt's "checked" argument is of no use to any of them.
-        self._actions[key].triggered.connect(lambda _checked=False: call())
+    def _of_cameras(self) -> tuple[Action, ...]:
+        return (
+            Action(
+                "fit",
+                "&Fit Both Views",
+                self.fit_all,
+                at="View.21 tools.41",
+                keys="Home",
+                icon="fit",
+                tip="Look at both bones as a whole",
+            ),
+            Action(
+                "focus",
+                "F&ocus on Selection",
+                self.focus,
+                at="View.22 row.41",
+                keys="F",
+                tip="Look at the selected landmarks closely",
+            ),
+            *(
+                Action(
+                    f"view_{view.value}",
+                    text,
+                    partial(self.look_from, view),
+                    at=f"sides.{place}",
+                    keys=str(number),
+                    tip="The side that Fit shows" if view is StandardView.FRONT else "",
+                )
+                for number, (view, (text, place)) in enumerate(_SIDES.items(), 1)
+            ),
+        )
 
-    def add_to(self, bar: QToolBar) -> None:
-        """Put the cross-section and its depth into a toolbar."""
-        bar.addAction(self._actions["section"])
-        holder = QWidget()
-        row = QHBoxLayout(holder)
-        row.setContentsMargins(4, 0, 8, 0)
-        row.addWidget(self.section_slider)
-        holder.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Preferred)
-        bar.addWidget(holder)
+    def _of_looks(self) -> tuple[QAction, ...]:
+        editor = self._editor
+        return (
+            Action(
+                "arrows",
+                "Residual &Arrows",
+                switches=lambda on: editor.look(arrows=on),
+                checked=lambda: editor.view.arrows,
+                at="View.12",
+                keys="A",
+                tip="From warped landmarks to destinations",
+            ),
+            Action(
+                "section",
+                "&Cross-Section",
+                switches=self._on_section,
+                checked=lambda: editor.view.section is not None,
+                at="View.31 tools.45",
+                keys="X",
+                icon="section",
+                tip="Cut both bones open",
+            ),
+            tool(self.section_slider, "tools.46"),
+            Action(
+                "wireframe",
+                "W&ireframe Bones",
+                switches=lambda on: editor.look(wireframe=on),
+                checked=lambda: editor.view.wireframe,
+                at="View.32",
+                keys="Shift+W",
+                tip="Draw edges only",
+            ),
+            Action(
+                "markers_larger",
+                "La&rger Landmarks",
+                lambda: self._resize_markers(1),
+                at="View.41",
+                keys="]",
+                possible=lambda: editor.view.marker_radius < MARKER_RADII[1],
+            ),
+            Action(
+                "markers_smaller",
+                "S&maller Landmarks",
+                lambda: self._resize_markers(-1),
+                at="View.42",
+                keys="[",
+                possible=lambda: editor.view.marker_radius > MARKER_RADII[0],
+            ),
+        )
 
     def shut_down(self) -> None:
         """Let go of the cameras and the editor."""
@@ -117,19 +204,15 @@ class ViewControls(QObject):
     # What changed
 
     def _on_view(self, _changed: object = None) -> None:
-        view, actions = self._editor.view, self._actions
+        view = self._editor.view
         self.link.set_mode(view.link)
-        actions[LINK_ACTIONS[view.link]].setChecked(True)
-        actions["link_next"].setIcon(icon(LINK_ACTIONS[view.link]))
-        actions["markers_larger"].setEnabled(view.marker_radius < MARKER_RADII[1])
-        actions["markers_smaller"].setEnabled(view.marker_radius > MARKER_RADII[0])
-        actions["arrows"].setChecked(view.arrows)
-        actions["wireframe"].setChecked(view.wireframe)
-        actions["section"].setChecked(view.section is not None)
+        self._link_next.setIcon(icon(LINK_ACTIONS[view.link]))
+        self._link_next.setToolTip(
+            f"Cameras are {view.link.value} ({self._link_next.keys} changes it)"
+        )
         self.section_slider.setEnabled(view.section is not None)
         if view.section is not None:
             self.section_slider.setValue(round(view.section * self.section_slider.maximum()))
-        actions["link_next"].setToolTip(f"Cameras are {view.link.value} (K changes it)")
 
     def _on_shown(self) -> None:
         surfaces, pairs = self._surfaces_now(), len(self._editor.session.pairs)
@@ -204,6 +287,9 @@ class ViewControls(QObject):
         if not targets:
             self.fit_all()
             return
+        if not all(Pose.of(view.camera).is_proper for view in self._views.values()):
+            # There is no side to look from any more.
+            self.fit_all()
         rotation = self.link.source_to_destination()
         poses = {side: Pose.of(view.camera) for side, view in self._views.items()}
         if rotation is not None:

@@ -52,6 +52,18 @@ class FastView(QtInteractor):
             interactor.EnableRenderOff()
             self.frame_seconds = time.perf_counter() - begin
 
+    @property
+    def graphics(self) -> str:
+        """What draws this view, in words."""
+        self.makeCurrent()
+        told = dict(
+            line.split(":", 1)
+            for line in self.render_window.ReportCapabilities().splitlines()
+            if line.startswith("OpenGL ") and ":" in line
+        )
+        keys = ("OpenGL vendor string", "OpenGL renderer string", "OpenGL version string")
+        return ", ".join(told[key].strip() for key in keys if key in told) or "unknown"
+
     def render(self, *_args: Any, **_kwargs: Any) -> None:
         """Schedule a paint; PyVista calls this all over the place."""
         if not getattr(self, "_closed", False):

@@ -94,6 +94,8 @@ class Viewport(Canvas):
             if not event.buttons():
                 self._hover(event.position())
             super().mouseMoveEvent(event)
+            if self._passing is not None:
+                self.stay_in_reach()
             return
         moved = event.position() - press.at
         if not press.dragging and max(abs(moved.x()), abs(moved.y())) <= SLOP:
@@ -156,6 +158,7 @@ class Viewport(Canvas):
         self.set_orbiting(True)
         self._zoom_rest.start()
         super().wheelEvent(event)
+        self.stay_in_reach()
 
     def _hover(self, at: QPointF) -> None:
         marker = self.layer.nearest(at, REACH)

@@ -19,14 +19,7 @@ from qtpy.QtWidgets import (
 
 from pinwarp.core.components import Components
 from pinwarp.gui.style import theme
-
-_WORDS = {
-    Components.FULL: ("Full warp", "meets every pair as closely as the penalty lets it"),
-    Components.WITHOUT_POSE: ("Without pose", "size and shape only: keeps the source's frame"),
-    Components.AFFINE: ("Affine fit", "moved, turned, sized and sheared as a whole"),
-    Components.SIMILARITY: ("Similarity fit", "moved, turned and sized"),
-    Components.RIGID: ("Rigid fit", "moved and turned, neither sized nor bent"),
-}
+from pinwarp.session.warp.component_words import COMPONENT_WORDS
 
 
 @dataclass(frozen=True)
@@ -56,19 +49,18 @@ class ShareBar(QWidget):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Paint a faint track and the bar on it."""
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(Qt.PenStyle.NoPen)
-        track = QRectF(0, self.height() / 2 - 2, self.width(), 4)
-        faint = theme.text_colour()
-        faint.setAlphaF(0.1)
-        painter.setBrush(faint)
-        painter.drawRoundedRect(track, 2, 2)
-        if self.share > 0:
-            track.setWidth(max(4.0, self.share * track.width()))
-            painter.setBrush(QColor(theme.OVERLAY_COLOUR))
+        with QPainter(self) as painter:
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            painter.setPen(Qt.PenStyle.NoPen)
+            track = QRectF(0, self.height() / 2 - 2, self.width(), 4)
+            faint = theme.text_colour()
+            faint.setAlphaF(0.1)
+            painter.setBrush(faint)
             painter.drawRoundedRect(track, 2, 2)
-        painter.end()
+            if self.share > 0:
+                track.setWidth(max(4.0, self.share * track.width()))
+                painter.setBrush(QColor(theme.OVERLAY_COLOUR))
+                painter.drawRoundedRect(track, 2, 2)
 
 
 class ComponentRow(QWidget):
@@ -113,7 +105,10 @@ class ComponentList(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self.rows = {part: ComponentRow(*_WORDS[part]) for part in Components}
+        self.rows = {
+            part: ComponentRow(words.title, words.meaning)
+            for part, words in COMPONENT_WORDS.items()
+        }
         group = QButtonGroup(self)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)

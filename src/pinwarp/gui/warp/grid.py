@@ -2,26 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from qtpy.QtCore import QObject
-from qtpy.QtGui import QAction, QActionGroup
 
+from pinwarp.core.errors import RangeError
 from pinwarp.core.landmarks import Side
 from pinwarp.core.lattice import box_lattice, plane_lattice
 from pinwarp.core.live import PreviewPoints, preview
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import Spline
+from pinwarp.gui.capability.action import Action, one_of
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.scene.drawables import Drawable, GridLines
 from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.gui.views.scenes import Scenes
-from pinwarp.gui.warp.warps import Presenter
-from pinwarp.session.editor import Editor, GridKind
+from pinwarp.gui.warp.warps import Warps
+from pinwarp.session.editor import Editor
+from pinwarp.session.view import GridKind
 
 GRID_ACTIONS = {kind: f"grid_{kind.name.lower()}" for kind in GridKind}
+_ACTIONS = {
+    GridKind.NONE: ("&None", "No grid", 11),
+    GridKind.BOX: ("&Box", "Straight on the source, bent by the warp", 12),
+    GridKind.PLANE_X: ("Plane Across &X", "Of the source's axes", 21),
+    GridKind.PLANE_Y: ("Plane Across &Y", "Of the source's axes", 22),
+    GridKind.PLANE_Z: ("Plane Across &Z", "Of the source's axes", 23),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,19 +48,17 @@ class _Request:
     spline: Spline
 
 
-class GridPresenter(QObject):
+class GridPresenter(Capability):
     """Draws the grid that the view state asks for; warps it off the UI thread.
 
     Parameters
     ----------
     editor
         Its view state is what the actions change.
-    presenter
+    warps
         Where the warps come from.
     scenes
         Where it is shown.
-    actions
-        The window's actions by key.
     parent
         The window.
     """
@@ -58,45 +66,50 @@ class GridPresenter(QObject):
     def __init__(
         self,
         editor: Editor,
-        presenter: Presenter,
+        warps: Warps,
         scenes: Scenes,
-        actions: Mapping[str, QAction],
         parent: QObject,
     ) -> None:
-        super().__init__(parent)
         self._editor = editor
-        self._presenter = presenter
+        self._warps = warps
         self._scenes = scenes
-        self._actions = actions
         self._drawn_for: tuple[Mesh, GridKind, float] | None = None
         self._bounds: tuple[Mesh, NDArray[np.float64]] | None = None
         self._grid: _Grid | None = None
         self._lines: dict[Side, GridLines | None] = dict.fromkeys(Side)
         self._asked: _Request | None = None
-        self._warps = LatestWins(_warped)
-        self._warps.computed.connect(self._on_warped)
-        self._warps.failed.connect(self._on_failure)
-        kinds = QActionGroup(self)
-        for kind, key in GRID_ACTIONS.items():
-            kinds.addAction(actions[key])
-            actions[key].triggered.connect(lambda _checked=False, kind=kind: editor.look(grid=kind))
-        actions["grid_next"].triggered.connect(lambda _checked=False: self._next())
+        self._worker = LatestWins(_warped)
+        self._worker.computed.connect(self._on_warped)
+        self._worker.failed.connect(self._on_failure)
+        self.following = Action("grid_next", "N&ext Grid", self._next, at="grid.31", keys="D")
+        self.actions = (*one_of(map(self._action_of, GridKind), parent), self.following)
         editor.session_changed.connect(self._on_change)
         editor.view_changed.connect(self._on_change)
-        presenter.result_changed.connect(self._on_result)
+        warps.result_changed.connect(self._on_result)
         self._on_change()
 
     @property
     def is_settled(self) -> bool:
         """Whether the grid is drawn as it was asked for."""
-        return self._warps.is_idle
+        return self._worker.is_idle
 
     def shut_down(self) -> None:
         """Stop the worker and let go of the editor."""
-        self._presenter.result_changed.disconnect(self._on_result)
+        self._warps.result_changed.disconnect(self._on_result)
         self._editor.session_changed.disconnect(self._on_change)
         self._editor.view_changed.disconnect(self._on_change)
-        self._warps.shut_down()
+        self._worker.shut_down()
+
+    def _action_of(self, kind: GridKind) -> Action:
+        text, tip, place = _ACTIONS[kind]
+        return Action(
+            GRID_ACTIONS[kind],
+            text,
+            lambda: self._editor.look(grid=kind),
+            checked=lambda: self._editor.view.grid is kind,
+            at=f"grid.{place}",
+            tip=tip,
+        )
 
     def _next(self) -> None:
         kinds = list(GridKind)
@@ -105,7 +118,6 @@ class GridPresenter(QObject):
 
     def _on_change(self, _changed: object = None) -> None:
         view = self._editor.view
-        self._actions[GRID_ACTIONS[view.grid]].setChecked(True)
         mesh = self._editor.session.mesh(Side.SOURCE)
         wanted = None
         if mesh is not None and view.grid is not GridKind.NONE:
@@ -132,7 +144,7 @@ class GridPresenter(QObject):
 
     def _ask(self) -> None:
         """Ask for the warped grid, where it is another."""
-        grid, result = self._grid, self._presenter.result
+        grid, result = self._grid, self._warps.result
         mesh = self._drawn_for[0] if self._drawn_for is not None else None
         if grid is None or result is None or result.shown is None or result.inputs.mesh is not mesh:
             if self._asked is not None:
@@ -142,9 +154,9 @@ class GridPresenter(QObject):
         request = _Request(grid, result.shown)
         if request != self._asked:
             self._asked = request
-            self._warps.request(request)
+            self._worker.request(request)
 
-    def _on_warped(self, warped: tuple[_Request, NDArray[np.float32]]) -> None:
+    def _on_warped(self, warped: tuple[_Request, NDArray[np.float32] | None]) -> None:
         request, lines = warped
         # One that is late still shows the way while something moves, unless the grid is another.
         if self._asked is not None and request.grid is self._grid:
@@ -164,7 +176,10 @@ class GridPresenter(QObject):
         raise error
 
 
-def _warped(request: _Request) -> tuple[_Request, NDArray[np.float32]]:
-    """Warp the places of a grid; runs in the worker."""
-    places = preview(request.spline, request.grid.points)
+def _warped(request: _Request) -> tuple[_Request, NDArray[np.float32] | None]:
+    """Warp the places of a grid, None where that cannot be drawn; runs in the worker."""
+    try:
+        places = preview(request.spline, request.grid.points)
+    except RangeError:
+        return request, None
     return request, places.reshape(request.grid.lines.shape)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from qtpy.QtCore import QSize, Qt, Signal
-from qtpy.QtGui import QAction, QPalette
+from qtpy.QtGui import QPalette
 from qtpy.QtWidgets import (
     QComboBox,
     QFrame,
@@ -20,13 +18,15 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.components import Components
+from pinwarp.gui.capability.action import Action
 from pinwarp.gui.style import theme
 from pinwarp.gui.warp.component_list import ComponentList, Remainder
 from pinwarp.gui.warp.figures_view import FiguresView
-from pinwarp.session.editor import GridKind, ViewState
 from pinwarp.session.judging.quality import Quality
 from pinwarp.session.judging.warp_figures import determined_in_words, rms_text, warp_figures
 from pinwarp.session.session import Session
+from pinwarp.session.view import GridKind, ViewState
+from pinwarp.session.warp.component_words import COMPONENT_WORDS
 
 _GRIDS = {
     GridKind.NONE: "None",
@@ -35,15 +35,6 @@ _GRIDS = {
     GridKind.PLANE_Y: "Plane across y",
     GridKind.PLANE_Z: "Plane across z",
 }
-_ENDS = {
-    Components.FULL: ("Aligned source", "Full warp"),
-    Components.WITHOUT_POSE: ("Source", "Without pose"),
-    Components.AFFINE: ("Aligned source", "Affine fit"),
-    Components.SIMILARITY: ("Aligned source", "Similarity fit"),
-    Components.RIGID: ("Aligned source", "Rigid fit: the same"),
-}
-
-
 TAKEN_APART = "The affine fit of the pairs, and how the full warp bends beyond it:"
 
 
@@ -52,8 +43,10 @@ class WarpPanel(QScrollArea):
 
     Parameters
     ----------
-    actions
-        The window's actions by key, for the buttons.
+    play
+        The action that plays the blend.
+    grid_key
+        Which key draws the next grid.
     """
 
     components_requested = Signal(object)
@@ -64,22 +57,22 @@ class WarpPanel(QScrollArea):
     grid_share_requested = Signal(float)
     copy_requested = Signal()
 
-    def __init__(self, actions: Mapping[str, QAction]) -> None:
+    def __init__(self, play: Action, grid_key: str) -> None:
         super().__init__()
         self._session = Session()
         self._quality: Quality | None = None
         self.components = ComponentList()
         self.play = QToolButton()
-        self.play.setDefaultAction(actions["play_blend"])
+        self.play.setDefaultAction(play)
         self.play.setIconSize(QSize(18, 18))
         self.play.setAutoRaise(True)
-        self.blend = _slider("Blend", "How much of it is applied (B plays it)", 100)
+        self.blend = _slider("Blend", f"How much of it is applied ({play.keys} plays it)", 100)
         self.blend_value = QLabel()
         self.ends = QLabel(), QLabel()
         self.grid = QComboBox()
         for kind, text in _GRIDS.items():
             self.grid.addItem(text, kind)
-        self.grid.setToolTip("Straight on the source, bent by the warp (D for the next)")
+        self.grid.setToolTip(f"Straight on the source, bent by the warp ({grid_key} for the next)")
         self.grid.setAccessibleName("Grid")
         self.grid_share = _slider("Place of the plane", "Where the plane crosses its axis", 100)
         # The grid's kinds stay where they are while it comes and goes.
@@ -165,13 +158,17 @@ class WarpPanel(QScrollArea):
         """Show what a session applies."""
         unit_changed = session.unit != self._session.unit
         self._session = session
-        self.components.show_choice(session.components)
-        self.blend_value.setText(f"{session.blend:.0%}")
-        self.blend.setEnabled(bool(session.pairs) and session.components is not Components.RIGID)
-        for label, text in zip(self.ends, _ENDS[session.components], strict=True):
-            label.setText(text)
+        settings = session.settings
+        is_rigid = settings.components is Components.RIGID
+        self.components.show_choice(settings.components)
+        self.blend_value.setText(f"{settings.blend:.0%}")
+        self.blend.setEnabled(bool(session.pairs) and not is_rigid)
+        words = COMPONENT_WORDS[settings.components]
+        same = ": the same" if is_rigid else ""
+        self.ends[0].setText(words.start.capitalize())
+        self.ends[1].setText(words.title + same)
         if not self.blend.isSliderDown():
-            _place(self.blend, round(100 * session.blend))
+            _place(self.blend, round(100 * settings.blend))
         if unit_changed:
             self.show_quality(self._quality)
 

@@ -2,34 +2,34 @@
 
 from __future__ import annotations
 
-from psygnal import Signal
-
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.tasks.jobs import LatestWins
-from pinwarp.gui.warp.warps import Presenter
+from pinwarp.gui.warp.warps import Warps
 from pinwarp.session.judging.quality import Quality, quality_of
+from pinwarp.session.signals import isolated
 from pinwarp.session.warp.solver import WarpResult
 
 
-class QualityPresenter:
+class QualityPresenter(Capability):
     """Hands on the quality of each warp; ``quality_changed`` emits it, or None without a warp.
 
     Where it takes a while, it is found by a worker once the hand rests.
 
     Parameters
     ----------
-    presenter
+    warps
         Where the warps come from.
     """
 
-    quality_changed = Signal(object)
+    quality_changed = isolated(object)
 
-    def __init__(self, presenter: Presenter) -> None:
-        self._presenter = presenter
+    def __init__(self, warps: Warps) -> None:
+        self._warps = warps
         self._judge = LatestWins(quality_of)
         self._judge.computed.connect(self._on_judged)
         self._judge.failed.connect(self._on_failure)
         self.quality: Quality | None = None
-        presenter.result_changed.connect(self._on_result)
+        warps.result_changed.connect(self._on_result)
 
     @property
     def is_settled(self) -> bool:
@@ -37,8 +37,8 @@ class QualityPresenter:
         return self._judge.is_idle
 
     def shut_down(self) -> None:
-        """Stop the worker and let go of the presenter."""
-        self._presenter.result_changed.disconnect(self._on_result)
+        """Stop the worker and let go of the warps."""
+        self._warps.result_changed.disconnect(self._on_result)
         self._judge.shut_down()
 
     def _on_result(self, result: WarpResult, at_rest: bool, quality: Quality | None) -> None:
@@ -52,7 +52,7 @@ class QualityPresenter:
             self._judge.request(result)
 
     def _on_judged(self, quality: Quality | None) -> None:
-        now = self._presenter.result
+        now = self._warps.result
         # Another warp, judged along with it, may have come meanwhile.
         if quality is None or (now is not None and quality.inputs == now.inputs):
             self._on_quality(quality)
@@ -62,4 +62,6 @@ class QualityPresenter:
         self.quality_changed.emit(quality)
 
     def _on_failure(self, error: Exception) -> None:
+        # The old figures must not pass for those of the new pairs.
+        self._on_quality(None)
         raise error

@@ -1,40 +1,32 @@
-"""Wires the editor and the views: renders what changed, turns requests into edits."""
+"""The warp of the session as it is, found by a worker while one edits."""
 
 from __future__ import annotations
 
 import time
-import weakref
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from enum import Enum, auto
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from psygnal import Signal
 
-from pinwarp.core.landmarks import Side, as_position
+from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
-from pinwarp.core.spline import PenaltyConvention
+from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.drawn.surface import shading_normals, triangles
 from pinwarp.gui.drawn.surfaces import Surfaces
-from pinwarp.gui.penalty.panel import PenaltyPanel
-from pinwarp.gui.placing.hand import LandmarkRequests
 from pinwarp.gui.scene.drawables import Drawable, Motion, Overlay, OverlayWarp
-from pinwarp.gui.scene.session_scene import session_drawables
-from pinwarp.gui.table.table import LandmarkModel, LandmarkTable
 from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.gui.views.scenes import Scenes
-from pinwarp.gui.views.viewport import Viewport
-from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.quality import Quality, quality_of
 from pinwarp.session.session import Session
-from pinwarp.session.warp.ghost import Ghost, ghost_of
+from pinwarp.session.signals import isolated
 from pinwarp.session.warp.solver import EAGER_MODES, WarpInputs, WarpResult, WarpSolver
 
 # A table of figures that run is not read: while something moves it is renewed this often (s).
 TABLE_PAUSE = 0.25
+_FAILED = "The warp could not be computed: Help > Copy Details says what went wrong."
 
 
 # In full, and as a stand-in.
@@ -66,105 +58,77 @@ class _Shaded:
     quality: Quality | None = None
 
 
-class Presenter:
-    """Everything between the editor and the widgets; both are passed in.
+class Warps(Capability):
+    """Keeps the warp of the editor's session up to date, and draws it.
 
     ``result_changed`` emits each new warp, whether it is at rest (no drag is under way), and the
     quality of its pairs where that took no time; else it is for others to find out.
+    ``figures_changed`` emits those whose figures are to be read: while something moves, few.
 
     Parameters
     ----------
     editor
         The truth.
-    viewports
-        One per side.
     scenes
-        Where bones, overlay and landmarks are shown.
+        Where the overlay is shown.
     surfaces
         Where meshes become surfaces.
-    model, table, panel
-        The other views.
+    is_slow
+        Says whether what moves is to be drawn as a stand-in.
     """
 
-    result_changed = Signal(WarpResult, bool, object)
+    result_changed = isolated(WarpResult, bool, object)
+    figures_changed = isolated(WarpResult)
 
     def __init__(
         self,
         editor: Editor,
-        viewports: dict[Side, Viewport],
         scenes: Scenes,
         surfaces: Surfaces,
-        model: LandmarkModel,
-        table: LandmarkTable,
-        panel: PenaltyPanel,
+        is_slow: Callable[[], bool],
     ) -> None:
         self._editor = editor
-        self._viewports = viewports
         self._scenes = scenes
         self._surfaces = surfaces
-        self._model = model
-        self._table = table
-        self._panel = panel
+        self._is_slow = is_slow
         self.solver = WarpSolver()
-        self._warps = LatestWins(self._warp)
+        self._worker = LatestWins(self._warp)
+        self._worker.computed.connect(self._on_warp)
+        self._worker.failed.connect(self._on_failure)
         self._asked: tuple[WarpInputs, bool] | None = None
         self.result: WarpResult | None = None
-        self._quality: Quality | None = None
-        self._table_shown_at = self._judged_at = 0.0
-        self._shown: weakref.WeakKeyDictionary[Mesh, OverlayWarp] = weakref.WeakKeyDictionary()
+        self._figures_read_at = self._judged_at = 0.0
+        self._shaded: _Warps = (None, None)
         self._overlay: _Warps = (None, None)
         self._is_moving = False
-        self._known_ghosts: dict[Side, Ghost | None] = {}
-        self._ghost_keys: dict[Side, object] = {}
-        self.requests = LandmarkRequests(editor, viewports, self.ghost)
-        self._connect()
-        self._on_session(editor.session)
-
-    def _connect(self) -> None:
-        editor, panel = self._editor, self._panel
-        editor.session_changed.connect(self._on_session)
-        editor.selection_changed.connect(self._on_looks)
-        editor.view_changed.connect(self._on_looks)
-        self._warps.computed.connect(self._on_warp)
-        self._warps.failed.connect(self._on_failure)
-        self._table.selection_requested.connect(
-            lambda names, side: editor.select(*names, side=Side(side) if side else None)
-        )
-        panel.penalty_previewed.connect(
-            lambda penalty: editor.preview(edits.set_penalty(editor.committed, penalty))
-        )
-        panel.penalty_requested.connect(self._on_penalty)
-        panel.convention_requested.connect(self._on_convention)
-        panel.planar_requested.connect(self._on_planar)
-        panel.unit_requested.connect(
-            lambda unit: editor.commit(edits.set_unit(editor.committed, unit), "Change unit")
-        )
+        editor.session_changed.connect(self._ask)
+        self._ask()
 
     def shut_down(self) -> None:
         """Stop the worker and let go of the editor."""
-        self._warps.shut_down()
-        self._editor.session_changed.disconnect(self._on_session)
-        self._editor.selection_changed.disconnect(self._on_looks)
-        self._editor.view_changed.disconnect(self._on_looks)
+        self._worker.shut_down()
+        self._editor.session_changed.disconnect(self._ask)
 
     @property
     def is_settled(self) -> bool:
-        """Whether what is shown follows from the session as it is."""
-        if not self._warps.is_idle or self._asked is None:
+        """Whether the warp is that of the session as it is."""
+        if not self._worker.is_idle or self._asked is None:
             return False
         asked, previewed = self._asked
         current = WarpInputs.of(self._editor.session, asked.stand_in)
         return asked == current and previewed == self._editor.is_previewing
 
-    # From the session to the screen
+    def drawables(self, side: Side) -> Iterator[Drawable]:
+        """Return the warped source over the destination."""
+        if side is not Side.DESTINATION:
+            return
+        view, (full, stand_in) = self._editor.view, self._overlay
+        if full is not None or stand_in is not None:
+            yield Overlay(full, stand_in, view.overlay, view.opacity, view.map_opacity)
+        if self._is_moving:
+            yield Motion()
 
-    def _on_session(self, session: Session) -> None:
-        self._model.show_session(session)
-        self._panel.show_session(session)
-        self._on_looks()
-        self._ask()
-
-    def _ask(self) -> None:
+    def _ask(self, _session: Session | None = None) -> None:
         """Ask the worker for the warp of the session as it is, if it is another."""
         inputs, previewing = self._inputs(), self._editor.is_previewing
         if previewing and not self._is_moving:
@@ -174,57 +138,16 @@ class Presenter:
             return
         self._asked = (inputs, previewing)
         kind = _Kind.PREVIEW if previewing else _Kind.REST
-        self._warps.request(_Request(inputs, kind))
+        self._worker.request(_Request(inputs, kind))
 
     def _inputs(self) -> WarpInputs:
         """Return what the warp depends on, with a stand-in where drawing in full is slow."""
         session = self._editor.session
-        mesh, slow = session.mesh(Side.SOURCE), self._viewports[Side.DESTINATION].is_slow
-        stand_in = self._surfaces.of(mesh).stand_in if mesh is not None and slow else None
-        return WarpInputs.of(session, stand_in)
-
-    def _on_looks(self, _changed: Any = None) -> None:
-        self._table.show_selection(self._editor.selection)
-        self._scenes.renew()
-
-    def drawables(self, side: Side) -> Iterator[Drawable]:
-        """Return bones, landmarks, and what the warp makes of them."""
-        editor, view = self._editor, self._editor.view
-        yield from session_drawables(
-            side, editor.session, editor.selection, view, self.result, self._quality
+        mesh = session.mesh(Side.SOURCE)
+        stand_in = (
+            self._surfaces.of(mesh).stand_in if mesh is not None and self._is_slow() else None
         )
-        ghost = self.ghost(side)
-        if ghost is not None:
-            yield ghost
-        if side is Side.DESTINATION:
-            full, stand_in = self._overlay
-            if full is not None or stand_in is not None:
-                yield Overlay(full, stand_in, view.overlay, view.opacity, view.map_opacity)
-            if self._is_moving:
-                yield Motion()
-
-    def show_quality(self, quality: Quality | None) -> None:
-        """Show where the other pairs expect the selected landmarks."""
-        self._quality = quality
-        self._scenes.renew()
-
-    def ghost(self, side: Side) -> Ghost | None:
-        """Predict where the next landmark of a side should be, on that side's surface."""
-        editor, result = self._editor, self.result
-        mesh = editor.session.mesh(side)
-        if mesh is None or result is None or editor.is_previewing:
-            return None
-        name = self.requests.target(side)
-        landmark = editor.session.landmark(name) if name else None
-        key = (side, landmark, result)
-        if self._ghost_keys.get(side) != key:
-            self._ghost_keys[side] = key
-            ghost = ghost_of(landmark, side, result)
-            if ghost is not None:
-                place, _ = self._surfaces.of(mesh).closest(ghost.position)
-                ghost = replace(ghost, position=as_position(place))
-            self._known_ghosts[side] = ghost
-        return self._known_ghosts[side]
+        return WarpInputs.of(session, stand_in)
 
     def _warp(self, request: _Request) -> _Shaded:
         """Solve and shade; runs in the worker."""
@@ -233,15 +156,14 @@ class Presenter:
         inputs = request.inputs
         solve = self.solver.preview if request.kind is _Kind.PREVIEW else self.solver.solve
         result = solve(inputs)
-        return _Shaded(
-            result,
-            request.kind,
-            (
-                self._shade(result, inputs.mesh, result.vertices),
-                self._shade(result, inputs.stand_in, result.stand_in),
-            ),
-            self._judge(result, request.kind),
+        before, before_coarse = self._shaded
+        warps = (
+            self._shade(result, inputs.mesh, result.vertices, before),
+            self._shade(result, inputs.stand_in, result.stand_in, before_coarse),
         )
+        # The mesh in full is as it was while only its stand-in moves.
+        self._shaded = (warps[0] or before, warps[1] or before_coarse)
+        return _Shaded(result, request.kind, warps, self._judge(result, request.kind))
 
     def _judge(self, result: WarpResult, kind: _Kind) -> Quality | None:
         """Judge the pairs along with the warp, so that all figures appear in one go."""
@@ -258,20 +180,19 @@ class Presenter:
         result: WarpResult,
         mesh: Mesh | None,
         vertices: NDArray[np.float32] | None,
+        before: OverlayWarp | None,
     ) -> OverlayWarp | None:
         if mesh is None or vertices is None:
             return None
-        shown = self._shown.get(mesh)
-        if shown is not None and shown.vertices is vertices:
-            return shown
+        if before is not None and before.mesh is mesh and before.vertices is vertices:
+            return before
         normals = shading_normals(triangles(vertices, mesh.faces))
         # The warped surface shows its inside when it did so before, or when the warp mirrors it.
         whole = result.inputs.mesh
         affine = result.shown.affine[1:] if result.shown is not None else np.eye(3)
         mirrored = bool(np.linalg.det(affine) < 0)
         inside_out = (whole is not None and self._surfaces.of(whole).inside_out) != mirrored
-        self._shown[mesh] = OverlayWarp(mesh, vertices, normals, inside_out)
-        return self._shown[mesh]
+        return OverlayWarp(mesh, vertices, normals, inside_out)
 
     def _on_warp(self, shaded: _Shaded) -> None:
         result, before = shaded.result, self.result
@@ -281,39 +202,27 @@ class Presenter:
         if shaded.kind is not _Kind.REFINE:
             same_mesh = before is not None and before.inputs.mesh is result.inputs.mesh
             self._overlay = _over(shaded.warps, self._overlay if same_mesh else (None, None))
-        if shaded.kind is not _Kind.PREVIEW and not self._editor.is_previewing:
+        at_rest = shaded.kind is not _Kind.PREVIEW
+        if at_rest and not self._editor.is_previewing:
             # Only now: the stand-in stays until the full mesh has caught up.
             self._is_moving = False
+        self._scenes.renew()
         now = time.monotonic()
-        due = shaded.quality is not None or now - self._table_shown_at > 2 * TABLE_PAUSE
-        due |= shaded.kind is not _Kind.PREVIEW
-        if due:
-            self._table_shown_at = now
-            self._model.show_result(result)
-        # Each widget that changes costs a composition of the window: only the slider's is live.
-        if due or result.inputs.penalty != self._editor.committed.warping_penalty:
-            self._panel.show_result(result)
-        self._on_looks()
-        self.result_changed.emit(result, shaded.kind is not _Kind.PREVIEW, shaded.quality)
+        due = shaded.quality is not None or now - self._figures_read_at > 2 * TABLE_PAUSE
+        if due or at_rest:
+            self._figures_read_at = now
+            self.figures_changed.emit(result)
+        self.result_changed.emit(result, at_rest, shaded.quality)
         if shaded.kind is _Kind.REST and result.factor is not None and not result.factor.has_modes:
-            self._warps.request_if_idle(_Request(result.inputs, _Kind.REFINE, result))
+            self._worker.request_if_idle(_Request(result.inputs, _Kind.REFINE, result))
 
     def _on_failure(self, error: Exception) -> None:
+        if self._asked is not None:
+            # The old warp must not pass for that of the new pairs.
+            inputs, previewing = self._asked
+            kind = _Kind.PREVIEW if previewing else _Kind.REST
+            self._on_warp(_Shaded(WarpResult(inputs, problem=_FAILED), kind))
         raise error
-
-    # The penalty
-
-    def _on_penalty(self, penalty: float) -> None:
-        session = edits.set_penalty(self._editor.committed, penalty)
-        self._editor.commit(session, "Change penalty")
-
-    def _on_convention(self, convention: PenaltyConvention) -> None:
-        session = edits.set_convention(self._editor.committed, convention)
-        self._editor.commit(session, "Change penalty convention")
-
-    def _on_planar(self, planar: bool) -> None:
-        label = "Treat as planar" if planar else "Do not treat as planar"
-        self._editor.commit(edits.set_planar(self._editor.committed, planar), label)
 
 
 def _over(warps: _Warps, before: _Warps) -> _Warps:

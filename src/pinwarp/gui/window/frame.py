@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from pathlib import Path
+
 from qtpy.QtCore import QByteArray, QSettings, QSize, Qt
+from qtpy.QtGui import QAction
 from qtpy.QtWidgets import (
     QDockWidget,
-    QHBoxLayout,
     QLabel,
     QMainWindow,
-    QSizePolicy,
-    QSlider,
     QSplitter,
     QTabWidget,
     QToolBar,
@@ -18,19 +19,17 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.landmarks import Side
+from pinwarp.gui.capability.action import placed
+from pinwarp.gui.capability.capability import RIGHT, Capability, Panel
 from pinwarp.gui.drawn.surfaces import Surfaces
-from pinwarp.gui.findings.panel import FindingsPanel
-from pinwarp.gui.maps.panel import MapPanel
-from pinwarp.gui.penalty.panel import PenaltyPanel
-from pinwarp.gui.penalty.snapshot_strip import SnapshotStrip
-from pinwarp.gui.placing.guide_bar import GuideBar
 from pinwarp.gui.style.icons import icon
-from pinwarp.gui.table.panel import LandmarkPanel
-from pinwarp.gui.table.table import LandmarkModel, LandmarkTable
+from pinwarp.gui.tasks.jobs import SlowJob
+from pinwarp.gui.tasks.progress import JobProgress
+from pinwarp.gui.tasks.stepped_job import SteppedJob
+from pinwarp.gui.views.scenes import Scenes
 from pinwarp.gui.views.viewport import Viewport
-from pinwarp.gui.warp.panel import WarpPanel
-from pinwarp.gui.window.actions import make_actions
-from pinwarp.gui.window.menus import fill_toolbar, make_menus, shortcut_groups
+from pinwarp.gui.window.faults import Faults
+from pinwarp.gui.window.menus import fill, make_menus, shortcut_groups
 from pinwarp.gui.window.shortcut_overlay import ShortcutOverlay
 
 # How long a message stands in the status bar.
@@ -38,117 +37,133 @@ MESSAGE_MS = 6000
 
 
 class WindowFrame(QMainWindow):
-    """Views, docks, menus, toolbar and status bar, all made but not yet wired."""
+    """Views, jobs and status bar; then docks, menus and toolbar, made of what capabilities offer.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    state_folder
+        Where the log of what went wrong is kept; None keeps none.
+    """
+
+    def __init__(self, state_folder: Path | None) -> None:
         super().__init__()
+        self.faults = Faults(state_folder, self)
         self.surfaces = Surfaces()
         self.viewports = {side: Viewport(side, self.surfaces) for side in Side}
-        self.model = LandmarkModel(self)
-        self.table = LandmarkTable(self.model)
-        self.actions_by_key = make_actions(self)
-        self.panel = PenaltyPanel(self.actions_by_key)
-        self.snapshot_strip = SnapshotStrip(
-            [self.actions_by_key[key] for key in ("snapshot", "sweep", "clear_snapshots")]
-        )
-        self.warp_panel = WarpPanel(self.actions_by_key)
-        self.map_panel = MapPanel(self.actions_by_key["place_suggested"])
-        self.findings = FindingsPanel()
-        self.landmarks = LandmarkPanel(self.table, self.findings, self.actions_by_key)
-        self._lay_out()
-
-    def _lay_out(self) -> None:
+        self.scenes = Scenes(self.viewports, self)
+        self.jobs = SlowJob(self)
+        self.stepped = SteppedJob(self)
+        progress = JobProgress(self.statusBar(), (self.jobs, self.stepped))
+        self.progress, self.cancel = progress.bar, progress.cancel
+        self.shortcuts: ShortcutOverlay | None = None
+        self._fitted: list[QDockWidget] = []
         self.setWindowIcon(icon("pinwarp"))
         self.resize(1280, 800)
+
+    def furnish(self, capabilities: Sequence[Capability], actions: Sequence[QAction]) -> None:
+        """Give each capability its places, and actions theirs.
+
+        Parameters
+        ----------
+        capabilities
+            In the order in which their panels and notes stand.
+        actions
+            All of them; where one stands is its own to say.
+        """
+        self._lay_out([widget for one in capabilities for widget in one.above])
+        for hint in (widget for one in capabilities for widget in one.hints):
+            self.statusBar().addWidget(hint, 1)
+        for note in (widget for one in capabilities for widget in one.notes):
+            self.statusBar().addPermanentWidget(note)
+        docks = self._make_docks([panel for one in capabilities for panel in one.panels])
+        toggles = [
+            placed(dock.toggleViewAction(), f"View.6{number}")
+            for number, dock in enumerate(docks, 1)
+        ]
+        for action in actions:
+            if action.parent() is None:
+                # What is connected to it goes when the window goes.
+                action.setParent(self)
+        # Kept: Python must not let go of a menu that Qt still shows.
+        self._menus = make_menus(self.menuBar(), [*actions, *toggles])
+        for place, menu in (item for one in capabilities for item in one.menus.items()):
+            fill(menu, actions, place)
+        bar = QToolBar("Tools", self)
+        bar.setObjectName("tools")
+        bar.setMovable(False)
+        bar.setIconSize(QSize(20, 20))
+        fill(bar, actions, "tools")
+        self.addToolBar(bar)
+        self.shortcuts = ShortcutOverlay(self, shortcut_groups(actions))
+
+    def _lay_out(self, above: Sequence[QWidget]) -> None:
         splitter = QSplitter(Qt.Orientation.Horizontal)
         splitter.setChildrenCollapsible(False)
         for side in Side:
             splitter.addWidget(self.viewports[side])
             splitter.setStretchFactor(splitter.count() - 1, 1)
         splitter.setSizes([1000, 1000])
-        self.guide_bar = GuideBar()
         centre = QWidget()
         column = QVBoxLayout(centre)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
-        column.addWidget(self.guide_bar)
+        for widget in above:
+            column.addWidget(widget)
         column.addWidget(splitter, 1)
         self.setCentralWidget(centre)
-        self._make_docks()
-        self._make_menus()
-        self._make_toolbar()
-        self.hint = QLabel()
-        self.statusBar().addWidget(self.hint, 1)
 
-    def _make_docks(self) -> None:
-        right = Qt.DockWidgetArea.RightDockWidgetArea
-        landmarks = self._add_dock("landmarks", "Landmarks", self.landmarks, right)
-        warp = self._add_dock("warp", "Warp", self.warp_panel, right)
-        self.tabifyDockWidget(landmarks, warp)
-        self.tabifyDockWidget(warp, self._add_dock("map", "Map", self.map_panel, right))
-        self.setTabPosition(right, QTabWidget.TabPosition.North)
-        landmarks.raise_()
-        penalty = QWidget()
-        rows = QVBoxLayout(penalty)
-        rows.setContentsMargins(0, 0, 0, 0)
-        rows.setSpacing(0)
-        rows.addWidget(self.snapshot_strip)
-        rows.addWidget(self.panel, 1)
-        self._penalty_dock = self._add_dock(
-            "penalty", "Warping penalty", penalty, Qt.DockWidgetArea.BottomDockWidgetArea
-        )
+    def _make_docks(self, panels: Sequence[Panel]) -> list[QDockWidget]:
+        """Dock panels: those of the right edge behind one another, the first in front."""
+        docks: list[QDockWidget] = []
+        right: list[QDockWidget] = []
+        for panel in panels:
+            dock = QDockWidget(panel.title, self)
+            dock.setObjectName(panel.key)
+            dock.setWidget(panel.widget)
+            self.addDockWidget(panel.area, dock)
+            docks.append(dock)
+            if panel.area == RIGHT:
+                if right:
+                    self.tabifyDockWidget(right[-1], dock)
+                right.append(dock)
+            if panel.height_changed is not None:
+                panel.height_changed.connect(lambda dock=dock: self._fit_dock(dock))
+                self._fitted.append(dock)
+        self.setTabPosition(RIGHT, QTabWidget.TabPosition.North)
+        right[0].raise_()
         # The table keeps the whole height of the right edge.
-        self.setCorner(Qt.Corner.BottomRightCorner, Qt.DockWidgetArea.RightDockWidgetArea)
-        self.resizeDocks([landmarks], [430], Qt.Orientation.Horizontal)
-        self.fit_penalty_dock()
+        self.setCorner(Qt.Corner.BottomRightCorner, RIGHT)
+        self.resizeDocks([right[0]], [430], Qt.Orientation.Horizontal)
+        self._fit_docks()
+        return docks
 
-    def fit_penalty_dock(self) -> None:
-        """Give the penalty no more height than it needs: the rest is the bones'."""
-        dock = self._penalty_dock
+    def _fit_docks(self) -> None:
+        for dock in self._fitted:
+            self._fit_dock(dock)
+
+    def _fit_dock(self, dock: QDockWidget) -> None:
+        """Give a dock no more height than it needs: the rest is the bones'."""
         # What has just appeared or gone counts now, not only at the next turn of the event loop.
-        for widget in (self.panel, dock.widget(), dock):
-            widget.layout().activate()
+        for widget in (*dock.widget().findChildren(QWidget), dock.widget(), dock):
+            if widget.layout() is not None:
+                widget.layout().activate()
         self.resizeDocks([dock], [1], Qt.Orientation.Vertical)
 
-    def _add_dock(
-        self, key: str, title: str, widget: QWidget, area: Qt.DockWidgetArea
-    ) -> QDockWidget:
-        dock = QDockWidget(title, self)
-        dock.setObjectName(key)
-        dock.setWidget(widget)
-        self.addDockWidget(area, dock)
-        return dock
-
-    def _make_menus(self) -> None:
-        # Kept: Python must not let go of a menu that Qt still shows.
-        self._menus = make_menus(self.menuBar(), self.actions_by_key)
-        self.recent_menu = self._menus["@recent"]
-        for dock in self.findChildren(QDockWidget):
-            self._menus["&View"].addAction(dock.toggleViewAction())
-        self.shortcuts = ShortcutOverlay(self, shortcut_groups(self.actions_by_key))
-
-    def _make_toolbar(self) -> None:
-        bar = QToolBar("Tools", self)
-        bar.setObjectName("tools")
-        bar.setMovable(False)
-        bar.setIconSize(QSize(20, 20))
-        fill_toolbar(bar, self.actions_by_key)
-        self.opacity = QSlider(Qt.Orientation.Horizontal)
-        self.opacity.setRange(5, 100)
-        self.opacity.setFixedWidth(110)
-        self.opacity.setAccessibleName("Opacity of the warped source")
-        self.opacity.setToolTip("Opacity of the warped source")
-        holder = QWidget()
-        row = QHBoxLayout(holder)
-        row.setContentsMargins(4, 0, 8, 0)
-        row.addWidget(self.opacity)
-        holder.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Preferred)
-        bar.addWidget(holder)
-        self.addToolBar(bar)
+    def toggle_shortcuts(self) -> None:
+        """Show the sheet of all keys and gestures, or take it away."""
+        if self.shortcuts is not None:
+            self.shortcuts.toggle()
 
     def say(self, text: str) -> None:
         """Say something in passing."""
         self.statusBar().showMessage(text, MESSAGE_MS)
+
+    def note(self, words: str, reason: str) -> None:
+        """Say something that holds until the window is closed."""
+        label = QLabel(words)
+        label.setToolTip(reason)
+        self.statusBar().addPermanentWidget(label)
+        self.say(f"{words}: {reason}")
 
     def restore_layout(self, settings: QSettings) -> None:
         """Put docks and window where they stood when the layout was saved."""
@@ -157,7 +172,7 @@ class WindowFrame(QMainWindow):
             if isinstance(stored, QByteArray):
                 restore(stored)
         # Snapshots that stood there are not remembered.
-        self.fit_penalty_dock()
+        self._fit_docks()
 
     def save_layout(self, settings: QSettings) -> None:
         """Remember where docks and window stand."""

@@ -83,26 +83,25 @@ class ShortcutOverlay(QWidget):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Paint the groups in columns on a dark sheet."""
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.fillRect(self.rect(), QColor(20, 24, 30, 225))
-        listed = self.lines()
-        rows = [len(entries) + 2 for _, entries in listed]
-        columns = _in_columns(rows, _COLUMNS)
-        longest = max(sum(rows[i] for i in column) for column in columns)
-        # A low window moves the lines together.
-        line = min(painter.fontMetrics().height() + 5, (self.height() - 32) // longest)
-        heights = [count * line for count in rows]
-        width = min(1000, self.width() - 60)
-        tallest = max(sum(heights[i] for i in column) for column in columns)
-        top = max(16.0, (self.height() - tallest) / 2)
-        left = (self.width() - width) / 2
-        for number, column in enumerate(columns):
-            at = QPointF(left + number * width / _COLUMNS, top)
-            for i in column:
-                self._paint_group(painter, *listed[i], at, width / _COLUMNS - 24, line)
-                at += QPointF(0, heights[i])
-        painter.end()
+        with QPainter(self) as painter:
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            painter.fillRect(self.rect(), QColor(20, 24, 30, 225))
+            listed = self.lines()
+            rows = [len(entries) + 2 for _, entries in listed]
+            columns = _in_columns(rows, _COLUMNS)
+            longest = max(sum(rows[i] for i in column) for column in columns)
+            # A low window moves the lines together.
+            line = min(painter.fontMetrics().height() + 5, (self.height() - 32) // longest)
+            heights = [count * line for count in rows]
+            width = min(1000, self.width() - 60)
+            tallest = max(sum(heights[i] for i in column) for column in columns)
+            top = max(16.0, (self.height() - tallest) / 2)
+            left = (self.width() - width) / 2
+            for number, column in enumerate(columns):
+                at = QPointF(left + number * width / _COLUMNS, top)
+                for i in column:
+                    self._paint_group(painter, *listed[i], at, width / _COLUMNS - 24, line)
+                    at += QPointF(0, heights[i])
 
     def _paint_group(
         self, painter: QPainter, title: str, entries: Lines, at: QPointF, width: float, line: int

@@ -11,12 +11,11 @@ from pinwarp.core.landmarks import Landmark, Position, Side
 from pinwarp.io.csv_cells import (
     YES_NO,
     coordinates_text,
-    formula_quoted,
     formula_unquoted,
     position_of,
     shortened,
 )
-from pinwarp.io.csv_text import Row, lines_of, rows_of
+from pinwarp.io.csv_text import Row, csv_line, lines_of, rows_of
 from pinwarp.io.landmark_formats.lines import checked_name, one_line
 from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written
@@ -128,8 +127,8 @@ def text_of(landmarks: Sequence[Landmark], side: Side | None, unit: str, title: 
             landmark = landmark.placed(side.other, None)
         # An active row without both positions would stop BigWarp's solver.
         active = landmark.enabled and landmark.is_complete
-        cells = [formula_quoted(one_line(landmark.name).strip()), "true" if active else "false"]
+        cells = [one_line(landmark.name).strip(), "true" if active else "false"]
         for position in (landmark.source, landmark.destination):
             cells += coordinates_text(position) if position is not None else ["Infinity"] * 3
-        lines.append(",".join('"' + cell.replace('"', '""') + '"' for cell in cells) + "\n")
+        lines.append(csv_line(cells, all_in_quotes=True))
     return Written("".join(lines))

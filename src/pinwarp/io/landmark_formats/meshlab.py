@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from xml.parsers import expat
 from xml.sax.saxutils import quoteattr
 
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Side
-from pinwarp.io.csv_cells import YES_NO, coordinates_text, shortened
+from pinwarp.io.careful_xml import XmlError, parse_xml
+from pinwarp.io.csv_cells import YES_NO, as_sentence, coordinates_text, shortened
 from pinwarp.io.landmark_formats.lines import landmark_on, one_line, three_numbers
 from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written
@@ -20,7 +20,6 @@ SUFFIXES = (".pp",)
 HOLDS_PAIRS = False
 
 _SIGNATURE = re.compile(r"<(!DOCTYPE\s+)?PickedPoints\b")
-_DEEPEST = 20
 _AGAIN = "Save it again in MeshLab."
 
 
@@ -43,7 +42,7 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     path
         The file, for the messages.
     text
-        What is in it. Entities of its own are refused: they can make a small file endless.
+        What is in it; see :func:`~pinwarp.io.careful_xml.parse_xml`.
     side
         The side the landmarks belong to.
 
@@ -64,46 +63,20 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     (1.0, 2.0, 3.0)
     """
     gathering = Gathering(path)
-    parser = expat.ParserCreate()
     lines = text.split("\n")
-    number = depth = 0
+    number = 0
 
-    def begin(tag: str, attributes: Mapping[str, str]) -> None:
-        nonlocal number, depth
-        depth += 1
-        if depth > _DEEPEST:
-            raise FileFormatError(
-                path,
-                f"Its elements are nested too deeply for landmarks. {_AGAIN}",
-                parser.CurrentLineNumber,
-            )
+    def begin(tag: str, attributes: Mapping[str, str], line: int) -> None:
+        nonlocal number
         if tag == "point":
-            line = parser.CurrentLineNumber
             words = lines[line - 1] if line <= len(lines) else ""
             gathering.take(line, words, _landmark, attributes, side, f"landmark_{number}")
             number += 1
 
-    def end(_tag: str) -> None:
-        nonlocal depth
-        depth -= 1
-
-    def refuse(*_arguments: object) -> None:
-        raise FileFormatError(
-            path,
-            f"It declares entities of its own, which picked points have no use for. {_AGAIN}",
-            parser.CurrentLineNumber,
-        )
-
-    parser.StartElementHandler = begin
-    parser.EndElementHandler = end
-    parser.EntityDeclHandler = refuse
     try:
-        parser.Parse(text, True)
-    except expat.ExpatError as error:
-        reason = expat.ErrorString(error.code)
-        raise FileFormatError(
-            path, f"This is not XML, or it was cut off ({reason}). {_AGAIN}", error.lineno
-        ) from None
+        parse_xml(text, begin)
+    except XmlError as error:
+        raise FileFormatError(path, f"{as_sentence(str(error))} {_AGAIN}", error.line) from None
     return gathering.reading(
         NAME, 'points as in: <point x="1.5" y="2" z="-3" active="1" name="fovea"/>'
     )

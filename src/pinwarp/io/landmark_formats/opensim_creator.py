@@ -9,7 +9,6 @@ from pathlib import Path
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.io.csv_cells import (
     coordinates_text,
-    formula_quoted,
     formula_unquoted,
     is_number,
     position_of,
@@ -207,5 +206,4 @@ def text_of(landmarks: Sequence[Landmark], side: Side | None, unit: str, title: 
 
 
 def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    lines = [csv_line([formula_quoted(name), *cells]) for name, *cells in rows]
-    return csv_line(header) + "".join(lines)
+    return "".join(map(csv_line, [header, *rows]))

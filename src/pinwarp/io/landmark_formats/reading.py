@@ -9,6 +9,7 @@ from typing import ParamSpec
 
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark
+from pinwarp.core.names import look_alike_notes
 from pinwarp.io.csv_cells import shortened
 
 P = ParamSpec("P")
@@ -175,4 +176,5 @@ class Gathering:
             what = "landmark without a position is" if unplaced == 1 else "landmarks have no"
             tail = "a name" if unplaced == 1 else "position: they are names"
             notes = (*notes, f"{unplaced} {what} {tail} still to be placed.")
+        notes = (*notes, *look_alike_notes(self._found))
         return LandmarkReading(landmarks, is_pairs, skipped, name, frame, unit, tuple(notes))

@@ -9,12 +9,10 @@ from pathlib import Path
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.io.csv_cells import (
     coordinates_text,
-    formula_quoted,
-    formula_unquoted,
     position_of,
     shortened,
 )
-from pinwarp.io.csv_text import Row, csv_line, lines_of, rows_of
+from pinwarp.io.csv_text import Row, lines_of, plain_line, rows_of
 from pinwarp.io.landmark_formats.lines import landmark_on, one_line
 from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written, in_millimetres, placed_only
@@ -119,7 +117,7 @@ def _landmark(row: Row, versioned: bool, is_last: bool, side: Side, default: str
     # From Slicer 5 on, a cell behind the others says whether the point was placed.
     if versioned and len(row.cells) > _STATUS and row.cells[_STATUS].strip() != _DEFINED:
         position = None
-    return landmark_on(side, formula_unquoted(name.strip()) or default, position)
+    return landmark_on(side, name.strip() or default, position)
 
 
 def text_of(landmarks: Sequence[Landmark], side: Side | None, unit: str, title: str) -> Written:
@@ -158,7 +156,7 @@ def text_of(landmarks: Sequence[Landmark], side: Side | None, unit: str, title: 
     lines = [_HEADER]
     for number, (name, position) in enumerate(placed, 1):
         numbers = coordinates_text(position)
-        label = formula_quoted(one_line(name).strip())
+        label = one_line(name).strip()
         cells = [str(number), *numbers, "0", "0", "0", "1", "1", "1", "0", label, "", ""]
-        lines.append(csv_line(cells))
+        lines.append(plain_line(cells))
     return Written("".join(lines), notes)

@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Position, Side
 from pinwarp.io.csv_cells import shortened
+from pinwarp.io.json_text import read_json
 from pinwarp.io.landmark_formats.lines import landmark_on
 from pinwarp.io.landmark_formats.reading import MOST, Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written, in_millimetres
@@ -29,6 +30,7 @@ _SCHEMA = (
 _ORIENTATION = [-1.0, -0.0, -0.0, -0.0, -1.0, -0.0, 0.0, 0.0, 1.0]
 _POINTS = re.compile(r'"controlPoints"\s*:\s*\[')
 _BETWEEN = re.compile(r"[\s,]*")
+_MOST_NAMED = 3
 _AGAIN = "Save it again in 3D Slicer."
 
 
@@ -73,14 +75,14 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     >>> read("a.mrk.json", text, Side.SOURCE).landmarks[0].source
     (1.0, 2.0, 3.0)
     """
-    markups = _part(_parsed(path, text), "markups", list)
+    root, notes = _parsed(path, text)
+    markups = _part(root, "markups", list)
     markup = markups[0] if markups and isinstance(markups[0], dict) else {}
     points = _part(markup, "controlPoints", list)
     if points is None:
         raise FileFormatError(
             path, f"There is no list of control points (markups) in it. {_AGAIN}", 1
         )
-    notes = []
     if markups and len(markups) > 1:
         notes.append(f"{len(markups)} lists: the first was read.")
     kind = markup.get("type", "Fiducial")
@@ -104,18 +106,22 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     )
 
 
-def _parsed(path: str | Path, text: str) -> Any:
-    parts = text.count("{") + text.count("[")
-    # A point has three; more than memory holds are quickly written.
-    if parts > 10 * MOST:
-        raise FileFormatError(
-            path,
-            f"It has {parts:,} lists, far more than landmarks. Check that it is the right file.",
-            1,
-        )
+def _parsed(path: str | Path, text: str) -> tuple[Any, list[str]]:
+    """Return what the JSON says, and what the user should know about how it was understood."""
+    # A point has three lists and a dozen keys; more than memory holds are quickly written.
+    for what, count, most in (
+        ("lists", text.count("{") + text.count("["), 10 * MOST),
+        ("keys", text.count(":"), 30 * MOST),
+    ):
+        if count > most:
+            raise FileFormatError(
+                path,
+                f"It has {count:,} {what}, far more than landmarks. Check that it is the right "
+                "file.",
+                1,
+            )
     try:
-        # Whole numbers of thousands of digits cannot become an int, but a float.
-        return json.loads(text, parse_int=float)
+        root, repeated = read_json(text, whole_as_float=True)
     except json.JSONDecodeError as error:
         raise FileFormatError(
             path, f"This is not JSON, or it was cut off ({error.msg}). {_AGAIN}", error.lineno
@@ -124,6 +130,11 @@ def _parsed(path: str | Path, text: str) -> Any:
         raise FileFormatError(
             path, f"Its lists are nested too deeply for landmarks. {_AGAIN}", 1
         ) from None
+    few = ", ".join(shortened(key) for key in repeated[:_MOST_NAMED])
+    more = f" and {len(repeated) - _MOST_NAMED} more" if len(repeated) > _MOST_NAMED else ""
+    if repeated:
+        return root, [f"A key is there twice, and the last counts: {few}{more}."]
+    return root, []
 
 
 def _part(value: Any, key: str, kind: type[T]) -> T | None:

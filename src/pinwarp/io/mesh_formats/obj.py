@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinwarp.core.mesh import Mesh
-from pinwarp.io.mesh_formats.surface import BrokenMeshError, Report, Surface, counted
+from pinwarp.core.words import counted
+from pinwarp.io.mesh_formats.surface import BrokenMeshError, Report, Surface
 from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
 
 _VERTEX = re.compile(rb"^[ \t]*v[ \t]+([^\r\n#]*)", re.MULTILINE)

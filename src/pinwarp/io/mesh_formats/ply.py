@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.words import counted
 from pinwarp.io.mesh_formats.ply_header import Element, Property, in_doubles, read_header
-from pinwarp.io.mesh_formats.surface import BrokenMeshError, Report, Surface, counted
+from pinwarp.io.mesh_formats.surface import BrokenMeshError, Report, Surface
 from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
 
 _CODES = {"i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I", "f4": "f", "f8": "d"}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -77,7 +78,8 @@ def write_vtp(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     ...     b'type="PolyData"' in Path(folder, "a.vtp").read_bytes()
     True
     """
-    _write(vtkXMLPolyDataWriter(), path, mesh, extras)
+    writer = vtkXMLPolyDataWriter()
+    _write(writer, writer.GetOutputString, path, mesh, extras)
 
 
 def write_legacy_vtk(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
@@ -108,10 +110,12 @@ def write_legacy_vtk(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> No
     writer = vtkPolyDataWriter()
     writer.SetFileTypeToBinary()
     writer.SetHeader("pinwarp")
-    _write(writer, path, mesh, extras)
+    _write(writer, writer.GetOutputStdString, path, mesh, extras)
 
 
-def _write(writer: Any, path: Path, mesh: Mesh, extras: VertexData) -> None:
+def _write(
+    writer: Any, output: Callable[[], str | bytes], path: Path, mesh: Mesh, extras: VertexData
+) -> None:
     complaints: list[str] = []
 
     def complain(_writer: object, _event: str, text: str) -> None:
@@ -132,10 +136,14 @@ def _write(writer: Any, path: Path, mesh: Mesh, extras: VertexData) -> None:
         array.SetName(name)
         data.AddArray(array)
     writer.SetInputData(surface)
-    writer.SetFileName(str(path))
+    # Not to the disk: where that is full, the legacy writer takes the whole program down.
+    writer.WriteToOutputStringOn()
     if not writer.Write() or writer.GetErrorCode() or complaints:
-        reason = complaints[0].strip().splitlines()[-1] if complaints else "Is the disk full?"
-        raise OSError(errno.EIO, f"The mesh could not be written. {reason}", str(path))
+        reason = f": {complaints[0].strip().splitlines()[-1]}" if complaints else ""
+        raise OSError(errno.EIO, f"The mesh could not be written{reason}", str(path))
+    content = output()
+    # VTK hands out text where the bytes happen to be some.
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
 
 
 def _polydata(

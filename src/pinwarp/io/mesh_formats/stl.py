@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.words import counted
 from pinwarp.io.mesh_formats.surface import (
     BrokenMeshError,
     Report,
     Surface,
-    counted,
     merge_equal,
 )
 from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData

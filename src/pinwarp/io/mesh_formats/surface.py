@@ -42,17 +42,6 @@ class Surface:
     notes: tuple[str, ...] = ()
 
 
-def counted(number: int, one: str, many: str | None = None) -> str:
-    """Return a number with its noun.
-
-    Examples
-    --------
-    >>> counted(1, "line"), counted(12345, "vertex", "vertices")
-    ('1 line', '12,345 vertices')
-    """
-    return f"{number:,} {one if number == 1 else many or one + 's'}"
-
-
 def merge_equal(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Merge points at exactly the same place, keeping the order of their first occurrence.
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from pinwarp.core.mesh import Mesh
-from pinwarp.io.mesh_formats.surface import BrokenMeshError, Surface, counted
+from pinwarp.core.words import counted
+from pinwarp.io.mesh_formats.surface import BrokenMeshError, Surface
 
 
 def mesh_of(surface: Surface) -> tuple[Mesh, tuple[str, ...]]:

@@ -11,11 +11,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pinwarp.core.words import counted
 from pinwarp.io.mesh_formats.surface import (
     BrokenMeshError,
     Report,
     Surface,
-    counted,
     cut_strips,
 )
 

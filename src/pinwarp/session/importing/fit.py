@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.core.kernel import LARGEST_COORDINATE
 from pinwarp.core.landmarks import Landmark, Side, flipped, positions, scaled
+from pinwarp.core.positions import LARGEST_COORDINATE
 from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.session.session import Session
 

@@ -8,13 +8,13 @@ from enum import StrEnum
 from pathlib import Path
 
 from pinwarp.core.landmarks import Landmark, Role, Side
+from pinwarp.core.names import look_alikes, visible
+from pinwarp.core.words import NAMED
 from pinwarp.io.landmark_files import LandmarkReading
 from pinwarp.session import edits
 from pinwarp.session.importing.fit import Fit
 from pinwarp.session.naming import free_names, is_automatic
 from pinwarp.session.session import Session
-
-_MOST_NAMED = 3
 
 
 class Pairing(StrEnum):
@@ -187,11 +187,12 @@ def arrivals(session: Session, arriving: Arriving, choice: ImportChoice) -> tupl
     names = [landmark.name for landmark in landmarks]
     targets = _targets(session, arriving.side, names, choice.pairing)
     known = {landmark.name: landmark for landmark in session.landmarks}
+    looks = {visible(name): name for name in known}
     result = []
     for landmark, target in zip(landmarks, targets, strict=True):
         there = known.get(target)
         fate, words = (
-            _newcomer(landmark, target)
+            _newcomer(landmark, target, looks.get(visible(target)))
             if there is None
             else _change(landmark, there, arriving.sides)
         )
@@ -237,6 +238,8 @@ def is_plain(session: Session, arriving: Arriving) -> bool:
         return False
     fates = {x.fate for x in arrivals(session, arriving, ImportChoice(Pairing.BY_NAME))}
     if Fate.REPLACES in fates:
+        return False
+    if look_alikes(x.name for x in (*session.landmarks, *reading.landmarks)):
         return False
     if fates == {Fate.NEW}:
         return arriving.side is None or not awaiting(session, arriving.side)
@@ -293,7 +296,7 @@ def summary(found: Iterable[Arrival], waiting: Sequence[str] = ()) -> str:
 
 
 def _named(names: Sequence[str]) -> str:
-    return f" ({', '.join(names)})" if len(names) <= _MOST_NAMED else ""
+    return f" ({', '.join(names)})" if len(names) <= NAMED else ""
 
 
 def _read(arriving: Arriving, choice: ImportChoice) -> tuple[Landmark, ...]:
@@ -315,10 +318,12 @@ def _targets(
     return targets + free_names(names[len(targets) :], taken)
 
 
-def _newcomer(landmark: Landmark, target: str) -> tuple[Fate, str]:
+def _newcomer(landmark: Landmark, target: str, alike: str | None) -> tuple[Fate, str]:
     words = "new" if target == landmark.name else f"new, called {target}"
     if landmark.source is None and landmark.destination is None:
         words += ", to be placed"
+    if alike is not None:
+        words += f", though it looks like {alike}"
     return Fate.NEW, words
 
 

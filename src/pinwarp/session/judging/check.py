@@ -3,35 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
-from pinwarp.core.errors import PinwarpError
-from pinwarp.core.findings import Finding, FindingKind
-from pinwarp.core.folds import Folds, folds_of
-from pinwarp.core.jacobian import determinants, jacobians
-from pinwarp.core.landmarks import Side
-from pinwarp.core.mesh import Mesh
-from pinwarp.core.spline import Spline
-from pinwarp.core.surface_distance import DistanceFigures, SurfaceIndex
+from pinwarp.core.findings import Severity, gravest_first
+from pinwarp.core.lengths import rms
+from pinwarp.core.names import look_alike_notes
+from pinwarp.core.surface_distance import DistanceFigures
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session.judging.quality import NamedFinding, named_findings, quality_of
 from pinwarp.session.session import Session
-from pinwarp.session.warp.solver import WarpInputs, WarpSolver
-
-FLAGGED = frozenset(
-    {
-        FindingKind.MIRRORED,
-        FindingKind.SWAPPED,
-        FindingKind.INCONSISTENT,
-        FindingKind.SUSPECT,
-        FindingKind.CONFLICT,
-        FindingKind.FOLD,
-    }
-)
-"""What should be put right before the warp is used; the rest is only worth knowing."""
+from pinwarp.session.warp.solved import SolvedWarp, solved
 
 
 @dataclass(frozen=True)
@@ -75,7 +59,7 @@ class Check:
     distance
         Of the warped source from the surface of the destination.
     findings
-        What was noticed, the flagged first.
+        What was noticed, the gravest first; what is wrong is flagged.
     notes
         What was noticed about the files.
 
@@ -101,7 +85,7 @@ class Check:
     @property
     def is_flagged(self) -> bool:
         """Whether anything should be put right before the warp is used."""
-        return any(is_flagged(named.finding) for named in self.findings)
+        return any(named.severity is Severity.WRONG for named in self.findings)
 
     def as_json(self) -> dict[str, Any]:
         """Return all of it as plain values for JSON; figures that are not known are None."""
@@ -116,7 +100,7 @@ class Check:
             "findings": [
                 {
                     "kind": named.finding.kind.value,
-                    "flagged": is_flagged(named.finding),
+                    "flagged": named.severity is Severity.WRONG,
                     "landmarks": list(named.names),
                     "words": named.sentence,
                 }
@@ -133,24 +117,14 @@ class Check:
         }
 
 
-def is_flagged(finding: Finding) -> bool:
-    """Say whether something should be put right before the warp is used.
-
-    Examples
-    --------
-    >>> [is_flagged(Finding(kind, (), 1.0)) for kind in (FindingKind.FOLD, FindingKind.POLE)]
-    [True, False]
-    """
-    return finding.kind in FLAGGED
-
-
-def check(session: Session) -> Check:
+def check(session: Session | SolvedWarp) -> Check:
     """Judge the warp of a session: its pairs, and what it does to the meshes that are there.
 
     Parameters
     ----------
     session
         Folds are looked for where its source mesh is there, distances measured where both are.
+        Or its warp, solved.
 
     Raises
     ------
@@ -165,23 +139,19 @@ def check(session: Session) -> Check:
     >>> len(checked.pairs), checked.is_flagged, checked.folded_vertices
     (16, False, 0)
     """
-    # Without its mesh, which the solver would warp in single precision.
-    result = WarpSolver().solve(WarpInputs.of(replace(session, source=None)))
+    warp = solved(session)
+    session, result = warp.session, warp.result
     quality = quality_of(result)
-    if result.shown is None or result.residuals is None or quality is None:
-        raise PinwarpError(
-            result.problem or "There is no pair yet: place a landmark on both meshes first."
-        )
+    assert quality is not None, "what is solved can be judged"
     names = [pair.name for pair in session.pairs]
     left_out = quality.left_out
     unknown = np.full(len(names), np.nan)
     columns = (
-        result.residuals,
+        warp.residuals,
         unknown if left_out is None else left_out.distances,
         unknown if left_out is None else left_out.standardised,
     )
-    source, destination = (session.mesh(side) for side in Side)
-    folds = None if source is None else _folds(result.shown, source)
+    folds, distances = warp.folds, warp.distances()
     findings = [*quality.findings_in(session)]
     if folds is not None:
         patches = (patch.finding for patch in folds.patches)
@@ -191,27 +161,17 @@ def check(session: Session) -> Check:
             PairFigures(name, *(float(x) for x in row))
             for name, row in zip(names, np.column_stack(columns), strict=True)
         ),
-        rms_residual=float(np.sqrt(np.mean(result.residuals**2))),
+        rms_residual=rms(warp.residuals),
         rms_leave_one_out=_known(None if left_out is None else left_out.rms),
         flexibility=_known(result.flexibility),
         suggested_penalty=None if quality.curve is None else quality.curve.suggested,
         folded_vertices=None if folds is None else folds.count,
         distance=None
-        if source is None or destination is None
-        else _distance(result.shown, source, destination),
-        # Sorted is stable: the order within is kept.
-        findings=tuple(sorted(findings, key=lambda named: not is_flagged(named.finding))),
-        notes=_about_files(session),
+        if distances is None
+        else DistanceFigures.of(distances[warp.source.on_surface]),
+        findings=gravest_first(findings),
+        notes=(*_about_files(session), *look_alike_notes(x.name for x in session.landmarks)),
     )
-
-
-def _folds(spline: Spline, mesh: Mesh) -> Folds:
-    return folds_of(determinants(jacobians(spline, mesh.vertices)), mesh, spline)
-
-
-def _distance(spline: Spline, source: Mesh, destination: Mesh) -> DistanceFigures:
-    distances = SurfaceIndex(destination).distances(spline.evaluate(source.vertices))
-    return DistanceFigures.of(distances[source.on_surface])
 
 
 def _about_files(session: Session) -> tuple[str, ...]:

@@ -9,22 +9,17 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.core.components import Components, as_drawn
+from pinwarp.core.components import Components
+from pinwarp.core.errors import RangeError
 from pinwarp.core.jacobian import determinants, jacobians, stretches
-from pinwarp.core.landmarks import Side
-from pinwarp.core.mesh import Mesh
+from pinwarp.core.live import LARGEST_SINGLE
 from pinwarp.core.normals import vertex_normals
 from pinwarp.core.prediction import Prediction, prediction_of
-from pinwarp.core.spline import PenaltyConvention
-from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.io.mesh_formats.vertex_data import VertexData
-from pinwarp.session.outputs.exports import SolvedWarp, solved
 from pinwarp.session.session import Session
+from pinwarp.session.warp.solved import SolvedWarp, in_parts, solved
 
 Matrix = NDArray[np.float64]
-
-# So many vertices between two looks at whether the user cancelled: a tenth of a second.
-PART = 50_000
 
 
 def _silent(_share: float, _stage: str) -> None:
@@ -32,8 +27,7 @@ def _silent(_share: float, _stage: str) -> None:
 
 
 def warped_mesh_data(
-    session: Session,
-    warped: Mesh,
+    session: Session | SolvedWarp,
     *,
     scalars: bool = True,
     progress: Callable[[float, str], None] = _silent,
@@ -43,9 +37,7 @@ def warped_mesh_data(
     Parameters
     ----------
     session
-        With its source mesh.
-    warped
-        Its :func:`~pinwarp.session.outputs.exports.warped_mesh`.
+        With its source mesh; or its warp, solved.
     scalars
         Whether to compute more than the normals.
     progress
@@ -64,76 +56,62 @@ def warped_mesh_data(
     Raises
     ------
     PinwarpError
-        When there is no pair, or the solve fails.
+        When there is no source mesh, no pair, or the solve fails.
 
     Examples
     --------
     >>> from pinwarp.io.samples import sample_session
-    >>> from pinwarp.session.outputs.exports import warped_mesh
     >>> from pinwarp.session.keeping.files import read_session
     >>> session = read_session(sample_session())
-    >>> list(warped_mesh_data(session, warped_mesh(session)).scalars)
+    >>> list(warped_mesh_data(session).scalars)
     ['distance_mm', 'det_j', 'largest_stretch', 'smallest_stretch', 'deviation_mm']
     """
+    warp = solved(session)
     progress(0.0, "finding normals")
-    normals = vertex_normals(warped)
-    source, destination = session.mesh(Side.SOURCE), session.mesh(Side.DESTINATION)
-    if not scalars or source is None:
+    normals = vertex_normals(warp.mesh)
+    if not scalars:
         return VertexData(normals)
-    warp, unit = solved(session), _in_a_name(session.unit)
+    places, unit = warp.source.vertices, _in_a_name(warp.session.unit)
     found: dict[str, Matrix] = {}
-    if destination is not None:
-        progress(0.1, "measuring distances")
-        index = SurfaceIndex(destination)
-        drawn = warp.applied(as_drawn(session.components), session.blend)
-        found[f"distance{unit}"] = _in_parts(
-            lambda places: index.distances(drawn.evaluate(places))[:, None],
-            source.vertices,
-            lambda share: progress(0.1 + 0.4 * share, "measuring distances"),
-        )[:, 0]
-    applied = warp.applied(session.components, session.blend)
+    progress(0.1, "measuring distances")
+    distances = warp.distances(lambda share: progress(0.1 + 0.4 * share, "measuring distances"))
+    if distances is not None:
+        found[f"distance{unit}"] = distances
 
     def derivatives(places: Matrix) -> Matrix:
-        jacobian = jacobians(applied, places)
+        jacobian = jacobians(warp.applied, places)
         return np.column_stack([determinants(jacobian), *stretches(jacobian)])
 
-    columns = _in_parts(
-        derivatives, source.vertices, lambda share: progress(0.5 + 0.2 * share, "measuring stretch")
+    columns = in_parts(
+        derivatives, places, lambda share: progress(0.5 + 0.2 * share, "measuring stretch")
     )
     names = ("det_j", "largest_stretch", "smallest_stretch")
     found |= dict(zip(names, columns.T, strict=True))
-    prediction = _prediction(session, warp)
+    prediction = _prediction(warp)
     if prediction is not None:
-        found[f"deviation{unit}"] = _in_parts(
+        found[f"deviation{unit}"] = in_parts(
             lambda places: prediction.standard_deviation(places)[:, None],
-            source.vertices,
+            places,
             lambda share: progress(0.7 + 0.3 * share, "estimating deviations"),
         )[:, 0]
+    for name, values in found.items():
+        if not float(np.abs(values).max()) <= LARGEST_SINGLE:
+            raise RangeError(f"The figures {name} leave the range of numbers that files hold.")
     return VertexData(normals, found)
 
 
-def _prediction(session: Session, warp: SolvedWarp) -> Prediction | None:
+def _prediction(warp: SolvedWarp) -> Prediction | None:
     """Return what predicts the warp as applied, None where nothing does."""
-    penalty = session.warping_penalty
-    if session.blend != 1 or (session.convention is PenaltyConvention.OPYNSIM and penalty > 0):
+    settings = warp.session.settings
+    if settings.blend != 1 or not settings.is_regular:
         return None
-    match session.components:
+    match settings.components:
         case Components.FULL | Components.WITHOUT_POSE:
-            return prediction_of(warp.factor, warp.destination, penalty)
+            return prediction_of(warp.factor, warp.destination, settings.penalty)
         case Components.AFFINE:
             return prediction_of(warp.factor, warp.destination, math.inf)
         case _:
             return None
-
-
-def _in_parts(
-    function: Callable[[Matrix], Matrix], places: Matrix, progress: Callable[[float], None]
-) -> Matrix:
-    parts = []
-    for first in range(0, len(places), PART):
-        progress(first / len(places))
-        parts.append(function(places[first : first + PART]))
-    return np.concatenate(parts)
 
 
 def _in_a_name(unit: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -10,9 +11,11 @@ from numpy.typing import NDArray
 
 from pinwarp.core.alignment import AffineParts, decompose
 from pinwarp.core.components import Components, applied, as_drawn
+from pinwarp.core.errors import RangeError
 from pinwarp.core.factor import SourceFactor
-from pinwarp.core.findings import Finding, FindingKind
+from pinwarp.core.findings import Finding, FindingKind, Severity, gravest_first
 from pinwarp.core.landmarks import Position
+from pinwarp.core.lengths import rms
 from pinwarp.core.quality import (
     LeaveOneOut,
     PenaltyCurve,
@@ -20,7 +23,7 @@ from pinwarp.core.quality import (
     leave_one_out,
     penalty_curve,
 )
-from pinwarp.core.spline import PenaltyConvention, Spline, solve
+from pinwarp.core.spline import Spline, solve
 from pinwarp.core.suspects import is_mirrored, suspects, swapped_pairs
 from pinwarp.session.session import Session
 from pinwarp.session.warp.pair_names import pair_names
@@ -50,6 +53,11 @@ class NamedFinding:
     names: tuple[str, ...]
     sentence: str
 
+    @property
+    def severity(self) -> Severity:
+        """How bad it is."""
+        return self.finding.severity
+
 
 @dataclass(frozen=True, eq=False)
 class Quality:
@@ -67,7 +75,8 @@ class Quality:
         convention.
     findings
         About the pairs, the gravest first: a mirrored set, swapped pairs, inconsistent
-        neighbours and suspects, then what the solve noticed, then isolated landmarks.
+        neighbours, suspects and conflicts, then what else the solve noticed, then isolated
+        landmarks.
     affine
         The best affine fit of the pairs, taken apart about the middle of the source landmarks.
     energy : (3,) float64
@@ -154,8 +163,16 @@ def quality_of(result: WarpResult) -> Quality | None:
     Returns
     -------
     Quality or None
-        None where there is no warp.
+        None where there is no warp, or one beyond all figures.
     """
+    try:
+        return _judged(result)
+    except RangeError:
+        # A part of the warp leaves the range of numbers: there is nothing to say in figures.
+        return None
+
+
+def _judged(result: WarpResult) -> Quality | None:
     factor, spline, inputs = result.factor, result.spline, result.inputs
     if factor is None or spline is None:
         return None
@@ -164,31 +181,33 @@ def quality_of(result: WarpResult) -> Quality | None:
     enough = len(inputs.source) >= LEAST_PAIRS and len(factor.poles) > 0
     if enough:
         curve = penalty_curve(factor, destination)
-        regular = inputs.convention is PenaltyConvention.REGULARISING or inputs.penalty == 0
-        if regular:
-            left_out = leave_one_out(factor, destination, inputs.penalty)
-    found = _about_pairs(factor, inputs.source, destination) if enough else ()
-    isolated = tuple(finding for finding in found if not finding.is_grave)
-    grave = tuple(finding for finding in found if finding.is_grave)
+        if inputs.settings.is_regular:
+            left_out = leave_one_out(factor, destination, inputs.settings.penalty)
+    fit = spline
+    if not math.isinf(inputs.settings.penalty):
+        fit = solve(factor, destination, np.inf)
+    found = _about_pairs(factor, inputs.source, destination, fit) if enough else ()
     return Quality(
         inputs=inputs,
         left_out=left_out,
         curve=curve,
-        findings=(*grave, *spline.findings, *isolated),
-        affine=decompose(solve(factor, destination, np.inf).affine, factor.centre),
+        findings=gravest_first((*found, *spline.findings)),
+        affine=decompose(fit.affine, factor.centre),
         energy=bending_energy(spline),
-        rms_by_components=_rms_by_components(factor, spline, destination),
+        rms_by_components=_rms_by_components(factor, spline, fit, destination),
         rank=factor.rank,
     )
 
 
 def _rms_by_components(
-    factor: SourceFactor, spline: Spline, destination: Matrix
+    factor: SourceFactor, spline: Spline, fit: Spline, destination: Matrix
 ) -> dict[Components, float]:
     left = {}
     for part in {as_drawn(part) for part in Components}:
-        misses = applied(spline, factor, destination, part).evaluate(factor.source) - destination
-        left[part] = float(np.sqrt(np.mean(np.sum(misses * misses, axis=1))))
+        # The affine fit is known already.
+        is_fit = part is Components.AFFINE
+        warp = fit if is_fit else applied(spline, factor, destination, part)
+        left[part] = rms(np.linalg.norm(warp.evaluate(factor.source) - destination, axis=1))
     return {part: left[as_drawn(part)] for part in Components}
 
 
@@ -223,7 +242,7 @@ def penalty_advice(curve: PenaltyCurve) -> str:
 
 
 def _about_pairs(
-    factor: SourceFactor, source: tuple[Position, ...], destination: Matrix
+    factor: SourceFactor, source: tuple[Position, ...], destination: Matrix, fit: Spline
 ) -> tuple[Finding, ...]:
     """Find what is wrong, at penalty 0: a penalty would spread one pair's error over others."""
     if is_mirrored(source, destination):
@@ -235,5 +254,5 @@ def _about_pairs(
     mended = destination.copy()
     for finding in swapped:
         mended[list(finding.rows)] = destination[list(finding.rows[::-1])]
-    others = suspects(factor, mended)
+    others = suspects(factor, mended, fit=None if swapped else fit)
     return (*swapped, *(x for x in others if not explained.intersection(x.rows)))

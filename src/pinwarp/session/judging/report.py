@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import platform
+from collections.abc import Callable
 from datetime import datetime
 
 import numpy as np
 
+from pinwarp.core.findings import gravest_first
+from pinwarp.core.folds import Folds
 from pinwarp.core.landmarks import Side
 from pinwarp.core.quality import PenaltyCurve
+from pinwarp.core.surface_distance import SurfaceComparison
 from pinwarp.io.chart import Line, Mark, line_chart
 from pinwarp.io.meshes import MeshFile
 from pinwarp.io.report import Figure, Report
-from pinwarp.session.judging.quality import Quality
-from pinwarp.session.judging.survey import Survey
-from pinwarp.session.outputs.exports import applied_in_words
+from pinwarp.session.judging.quality import Quality, quality_of
 from pinwarp.session.session import Session
+from pinwarp.session.warp.setting_words import settings_in_words
+from pinwarp.session.warp.solved import SolvedWarp
 from pinwarp.session.warp.solver import WarpResult
 from pinwarp.version import __version__
 
@@ -25,11 +29,11 @@ _AXES = "xyz"
 
 def report_of(
     title: str,
-    session: Session,
-    result: WarpResult,
-    quality: Quality,
-    survey: Survey,
+    warp: SolvedWarp,
     made: datetime,
+    *,
+    quality: Quality | None = None,
+    told: Callable[[float, str], None] = lambda _share, _stage: None,
 ) -> Report:
     """Collect what is known about a session's warp.
 
@@ -37,21 +41,31 @@ def report_of(
     ----------
     title
         What the session is called.
-    session
-        The session; the others were computed for it.
-    result, quality, survey
-        Its warp, what its pairs say about one another, and what was found all over the source.
+    warp
+        The session, solved.
     made
         When the report is made.
+    quality
+        What its pairs say about one another, where that is known already.
+    told
+        Told the share that is done and what is going on; may raise to cancel.
 
     Returns
     -------
     Report
     """
+    session, result = warp.session, warp.result
+    told(0.0, "judging the pairs")
+    if quality is None or quality.inputs != result.inputs:
+        quality = quality_of(result)
+    assert quality is not None, "what is solved can be judged"
     names = [pair.name for pair in session.pairs]
     unit = session.unit
-    # A stable sort: folds come behind what causes them, what is only isolated last.
-    found = sorted((*quality.findings, *survey.findings), key=lambda one: not one.is_grave)
+    told(0.3, "measuring distances")
+    folds, compared = warp.folds, warp.comparison
+    patches = () if folds is None else (patch.finding for patch in folds.patches)
+    # Folds come behind what causes them, what is only isolated last.
+    found = gravest_first((*quality.findings, *patches))
     return Report(
         title=title,
         made=f"Made by pinwarp {__version__} on {made:%d %B %Y at %H:%M} "
@@ -59,8 +73,8 @@ def report_of(
         facts=_facts(session, result),
         findings=tuple(finding.describe(names, unit) for finding in found),
         figures=(
-            *_of_pairs(session, result, quality),
-            *_of_surfaces(survey, unit),
+            *_of_pairs(warp, quality),
+            *_of_surfaces(compared, folds, unit),
             *_of_warp(quality, unit),
         ),
         remarks=(
@@ -89,16 +103,10 @@ def report_of(
 def _facts(session: Session, result: WarpResult) -> tuple[tuple[str, str], ...]:
     unit = session.unit
     facts = [(f"{side.value.capitalize()} mesh", _mesh_text(session, side)) for side in Side]
-    penalty = session.warping_penalty
     facts += [
         ("Pairs", f"{len(session.pairs)} of {len(session.landmarks)} landmarks"),
         ("Unit", unit),
-        (
-            "Warping penalty",
-            "infinite (the affine fit)" if np.isinf(penalty) else f"{penalty:.6g} {unit}",
-        ),
-        ("Convention", session.convention.value),
-        ("Applied", applied_in_words(session)),
+        *settings_in_words(session.settings, unit),
     ]
     if result.flexibility is not None:
         facts.append(("Flexibility", f"{result.flexibility:.0%}"))
@@ -119,13 +127,12 @@ def _mesh_text(session: Session, side: Side) -> str:
     )
 
 
-def _of_pairs(session: Session, result: WarpResult, quality: Quality) -> list[Figure]:
-    unit, left_out = session.unit, quality.left_out
+def _of_pairs(warp: SolvedWarp, quality: Quality) -> list[Figure]:
+    unit, left_out = warp.session.unit, quality.left_out
     figures = []
-    for row, pair in enumerate(session.pairs):
-        if result.residuals is not None:
-            residual = float(result.residuals[row])
-            figures.append(Figure("Pairs", pair.name, "residual", residual, unit))
+    for row, pair in enumerate(warp.session.pairs):
+        residual = float(warp.residuals[row])
+        figures.append(Figure("Pairs", pair.name, "residual", residual, unit))
         if left_out is not None:
             missed, unusual = float(left_out.distances[row]), float(left_out.standardised[row])
             figures.append(Figure("Pairs", pair.name, "left out", missed, unit))
@@ -136,9 +143,10 @@ def _of_pairs(session: Session, result: WarpResult, quality: Quality) -> list[Fi
     return figures
 
 
-def _of_surfaces(survey: Survey, unit: str) -> list[Figure]:
+def _of_surfaces(
+    compared: SurfaceComparison | None, folds: Folds | None, unit: str
+) -> list[Figure]:
     figures = []
-    compared = None if survey.map is None else survey.map.comparison
     if compared is not None:
         for item, found in (
             ("source to destination", compared.forward_figures),
@@ -151,8 +159,8 @@ def _of_surfaces(survey: Survey, unit: str) -> list[Figure]:
                 ("maximum", found.maximum),
             ):
                 figures.append(Figure("Distances", item, quantity, value, unit))
-    if survey.folds is not None:
-        figures.append(Figure("Folds", "vertices", "folded", survey.folds.count))
+    if folds is not None:
+        figures.append(Figure("Folds", "vertices", "folded", folds.count))
     return figures
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pinwarp.core.errors import RangeError
 from pinwarp.core.findings import Finding
 from pinwarp.core.folds import Folds, folds_of
 from pinwarp.core.jacobian import determinants, jacobians
@@ -21,7 +22,7 @@ from pinwarp.core.maps import (
 )
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.prediction import prediction_of
-from pinwarp.core.spline import PenaltyConvention, Spline
+from pinwarp.core.spline import Spline
 from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.session.judging.quality import LEAST_PAIRS
 from pinwarp.session.warp.solver import WarpResult
@@ -118,12 +119,10 @@ class Surveyor:
         mesh, shown = result.inputs.mesh, result.shown
         if mesh is None or shown is None:
             return Survey(result, kind, missing=missing)
-        if result is not self._result:
-            self._result, self._maps = result, {}
-            self._determinant = determinants(jacobians(shown, mesh.vertices))
-            self._folds = folds_of(self._determinant, mesh, shown)
-            assert result.factor is not None, "what is shown was solved from it"
-            self._size = overall_size(shown, result.factor)
+        try:
+            self._look_at(result, mesh, shown)
+        except RangeError as error:
+            return Survey(result, kind, missing="" if kind is None else str(error))
         taken_out = self._size if relative or must_be_relative(self._size) else 1.0
         if taken_out != self._taken_out:
             self._taken_out = taken_out
@@ -132,12 +131,26 @@ class Surveyor:
             self._destination = destination
             self._maps.pop(MapKind.DISTANCE, None)
         if kind is not None and not missing:
-            if kind not in self._maps:
-                self._make(kind, result, mesh, shown)
-            if kind not in self._maps:
-                missing = FEW_PAIRS
+            try:
+                if kind not in self._maps:
+                    self._make(kind, result, mesh, shown)
+                if kind not in self._maps:
+                    missing = FEW_PAIRS
+            except RangeError as error:
+                missing = str(error)
         found = self._maps.get(kind) if kind is not None and not missing else None
         return Survey(result, kind, found, missing, self._folds, self._size)
+
+    def _look_at(self, result: WarpResult, mesh: Mesh, shown: Spline) -> None:
+        """Do what every survey of a warp needs, unless it was done for the last one."""
+        if result is self._result:
+            return
+        self._result, self._maps = None, {}
+        self._determinant = determinants(jacobians(shown, mesh.vertices))
+        self._folds = folds_of(self._determinant, mesh, shown)
+        assert result.factor is not None, "what is shown was solved from it"
+        self._size = overall_size(shown, result.factor)
+        self._result = result
 
     def _make(self, kind: MapKind, result: WarpResult, mesh: Mesh, shown: Spline) -> None:
         factor, inputs = result.factor, result.inputs
@@ -158,7 +171,9 @@ class Surveyor:
                 jacobian = jacobians(shown, mesh.vertices)
                 made = stretch_maps(jacobian, mesh, self._taken_out)
             case MapKind.UNCERTAINTY:
-                prediction = prediction_of(factor, np.array(inputs.destination), inputs.penalty)
+                prediction = prediction_of(
+                    factor, np.array(inputs.destination), inputs.settings.penalty
+                )
                 made = (uncertainty_map(prediction, mesh),) if prediction is not None else ()
         self.maps += len(made)
         self._maps.update({part.kind: part for part in made})
@@ -184,7 +199,7 @@ def _missing(result: WarpResult, destination: Mesh | None, kind: MapKind) -> str
     if kind is MapKind.UNCERTAINTY:
         if len(inputs.source) < LEAST_PAIRS:
             return FEW_PAIRS
-        if inputs.convention is not PenaltyConvention.REGULARISING and inputs.penalty > 0:
+        if not inputs.settings.is_regular:
             return (
                 "The uncertainty belongs to the regularising convention: "
                 "choose that one, or a penalty of 0."

@@ -10,20 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinwarp.core.components import Components
+from pinwarp.core.lengths import rounding_among
+from pinwarp.io.csv_cells import numeral
 from pinwarp.io.csv_text import csv_line
-from pinwarp.session.judging.quality import Quality
+from pinwarp.session.judging.quality import LEAST_PAIRS, Quality
+from pinwarp.session.warp.component_words import COMPONENT_WORDS
 
-# Shorter than this share of the coordinates, a length is rounding.
-ROUNDING = 1e-9
 _SIGNIFICANT = 4
 
-_PARTS = {
-    Components.FULL: "full warp",
-    Components.WITHOUT_POSE: "warp without pose",
-    Components.AFFINE: "affine fit",
-    Components.SIMILARITY: "similarity fit",
-    Components.RIGID: "rigid fit",
-}
 _OPEN_DIRECTIONS = {
     0: "One place tells how far to move, and nothing else: turn and size stay as they are.",
     1: "Pairs on one line tell how far to move, the size, and one direction: the turn about the "
@@ -74,7 +68,7 @@ def determined_in_words(quality: Quality | None) -> str:
         return "No pair yet: place a landmark on both bones to see what the warp does."
     if quality.rank < 3:
         return f"{_OPEN_DIRECTIONS[quality.rank]} Four pairs that span space determine the rest."
-    if len(quality.inputs.source) < 5:
+    if len(quality.inputs.source) < LEAST_PAIRS:
         return "Four pairs are met by an affine map: the warp bends from five pairs on."
     return ""
 
@@ -173,16 +167,16 @@ def figures_table(quality: Quality, unit: str) -> str:
     for part in Components:
         rms = quality.rms_by_components[part]
         tidy = rms if rms > _noise(quality) else 0.0
-        rows.append(("RMS left", _PARTS[part], f"{tidy:.10g}", unit))
+        rows.append(("RMS left", COMPONENT_WORDS[part].noun, numeral(f"{tidy:.10g}"), unit))
     for row in warp_figures(quality, unit):
-        rows += [(row.title, x.name, f"{x.value:.10g}", x.unit) for x in row.figures]
+        rows += [(row.title, x.name, numeral(f"{x.value:.10g}"), x.unit) for x in row.figures]
     return "".join(csv_line(row, "\t") for row in rows)
 
 
 def _noise(quality: Quality) -> float:
     """Return the length below which there is only rounding."""
     inputs = quality.inputs
-    return ROUNDING * float(np.abs([inputs.source, inputs.destination]).max(initial=0.0))
+    return rounding_among(inputs.source, inputs.destination)
 
 
 def _figures(

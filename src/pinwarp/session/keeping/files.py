@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -60,18 +61,19 @@ def write_session(path: str | Path, session: Session) -> None:
 
     Raises
     ------
-    LandmarkError, PenaltyError
-        When it could not be read back: two landmarks have one name, or the penalty is negative.
+    LandmarkError
+        When it could not be read back: two landmarks have one name.
     OSError
         When the file cannot be written; an older one is untouched.
 
     Examples
     --------
     >>> import tempfile
+    >>> from pinwarp.core.settings import WarpSettings
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder, "femur.pinwarp.csv")
-    ...     write_session(path, Session(warping_penalty=2.5))
-    ...     read_session(path).warping_penalty
+    ...     write_session(path, Session(settings=WarpSettings(2.5)))
+    ...     read_session(path).settings.penalty
     2.5
     """
     session_file.write_session(path, to_record(session))
@@ -110,11 +112,11 @@ def with_meshes(
         reference = session.mesh_file(side)
         if not isinstance(reference, MeshReference):
             continue
-        if not reference.path.is_file() and folder is not None:
+        if not os.path.isfile(reference.path) and folder is not None:
             found = find_mesh(reference, [folder])
             if found is not None and found.is_same:
                 reference = replace(reference, path=found.path)
-        if reference.path.is_file():
+        if os.path.isfile(reference.path):
             session = session.with_mesh(side, _read(reference))
     return session
 

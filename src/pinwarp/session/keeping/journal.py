@@ -82,8 +82,9 @@ class Journal:
         self._told: dict[str, object] | None = None
         self._inherited: list[tuple[Path, FileLock]] = []
         self._closing = threading.Event()
-        editor.session_changed.connect(self._note)
-        editor.saved.connect(self._note)
+        # Before anything is drawn: whatever happens then, the work is kept.
+        editor.session_changed.connect(self._note, priority=1)
+        editor.saved.connect(self._note, priority=1)
         self._note()
         self._thread = threading.Thread(target=self._keep_writing, name="journal", daemon=True)
         self._thread.start()

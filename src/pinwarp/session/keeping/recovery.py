@@ -11,11 +11,15 @@ from pathlib import Path
 
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import pairs_of
+from pinwarp.io.csv_text import read_text
 from pinwarp.io.file_lock import FileLock
 from pinwarp.io.file_names import session_name
 from pinwarp.io.reading import hash_of
 from pinwarp.io.work_file import UnsavedWork, read_work
 from pinwarp.session.keeping.journal import LOCK, WINDOW, WORK, remove_window
+
+LARGEST_NOTE = 1 << 20
+"""More bytes than what a window says of itself."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +51,7 @@ class LostWork:
     def file_has_changed(self) -> bool:
         """Whether the session's file is another now than the one the work began with."""
         path = self.work.path
-        return path is not None and path.exists() and hash_of(path) != self.work.sha256
+        return path is not None and os.path.exists(path) and hash_of(path) != self.work.sha256
 
     def claim(self) -> FileLock | None:
         """Take the work for this process; None when another one was faster."""
@@ -128,7 +132,7 @@ def window_with(windows: Path, path: Path, own: Path) -> OtherWindow | None:
             lock.release()
             continue
         try:
-            about = json.loads((folder / WINDOW).read_text(encoding="utf-8"))
+            about = json.loads(read_text(folder / WINDOW, "window", LARGEST_NOTE))
             if about["session"] is not None and _is_same_file(Path(about["session"]), path):
                 return OtherWindow(
                     process=int(about["process"]),
@@ -136,7 +140,7 @@ def window_with(windows: Path, path: Path, own: Path) -> OtherWindow | None:
                     since=datetime.fromisoformat(about["since"]),
                     has_unsaved_work=(folder / WORK).exists(),
                 )
-        except (OSError, KeyError, TypeError, ValueError):
+        except (OSError, KeyError, TypeError, ValueError, RecursionError):
             # It has only just begun or ended.
             continue
     return None

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import math
 import os
+from dataclasses import fields
+from enum import Enum
 from pathlib import Path
 
-from pinwarp.core.components import Components
 from pinwarp.core.errors import PinwarpError
+from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
 from pinwarp.io.mesh_reference import MeshReference
 from pinwarp.io.meshes import MeshFile
-from pinwarp.session.outputs.exports import applied_in_words
 from pinwarp.session.session import Session
+from pinwarp.session.warp.component_words import applied_in_words
 from pinwarp.version import __version__
+
+# Told even where they are as usual.
+_ALWAYS = ("penalty", "convention")
 
 
 def script_of(session: Session, folder: Path) -> str:
@@ -53,7 +58,7 @@ def script_of(session: Session, folder: Path) -> str:
     changes, imports = _as_seen(session.source)
     return "\n".join(
         [
-            f'"""Warp a mesh as pinwarp {__version__} did: {applied_in_words(session)}, '
+            f'"""Warp a mesh as pinwarp {__version__} did: {applied_in_words(session.settings)}, '
             f'{len(pairs)} pairs."""',
             "",
             *(["from dataclasses import replace"] if changes else []),
@@ -79,7 +84,9 @@ def script_of(session: Session, folder: Path) -> str:
             "session = pinwarp.Session(",
             "    source=mesh,",
             "    landmarks=tuple(pinwarp.Landmark(name, *pair) for name, pair in PAIRS.items()),",
-            *(f"    {option}," for option in _options(session)),
+            "    settings=pinwarp.WarpSettings(",
+            *(f"        {option}," for option in _options(session.settings)),
+            "    ),",
             ")",
             "pinwarp.write_mesh(WARPED_MESH, pinwarp.warped_mesh(session))",
             'print(f"Wrote {WARPED_MESH}")',
@@ -100,21 +107,21 @@ def _as_seen(file: MeshFile | MeshReference) -> tuple[list[str], list[str]]:
     return changes, imports
 
 
-def _options(session: Session) -> list[str]:
+def _options(settings: WarpSettings) -> list[str]:
     """Return how the warp is solved and applied; what is usual goes without saying."""
-    penalty = session.warping_penalty
-    number = 'float("inf")' if math.isinf(penalty) else repr(penalty)
-    options = [
-        f"warping_penalty={number}",
-        f"convention=pinwarp.PenaltyConvention.{session.convention.name}",
+    return [
+        f"{field.name}={_literal(value)}"
+        for field in fields(settings)
+        if (value := getattr(settings, field.name)) != getattr(USUAL_SETTINGS, field.name)
+        or field.name in _ALWAYS
     ]
-    if session.planar:
-        options.append("planar=True")
-    if session.components is not Components.FULL:
-        options.append(f"components=pinwarp.Components.{session.components.name}")
-    if session.blend != 1:
-        options.append(f"blend={session.blend!r}")
-    return options
+
+
+def _literal(value: object) -> str:
+    """Return a value as Python reads it where only pinwarp is imported."""
+    if isinstance(value, Enum):
+        return f"pinwarp.{type(value).__name__}.{value.name}"
+    return 'float("inf")' if value == math.inf else repr(value)
 
 
 def _relative(path: Path, folder: Path) -> str:

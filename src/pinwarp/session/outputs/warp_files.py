@@ -17,17 +17,15 @@ from pinwarp.core.spline import Spline
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES, read_landmarks
 from pinwarp.io.meshes import MESH_SUFFIXES, read_mesh, write_mesh
 from pinwarp.session.importing.conversion import frame_notes, write_in_frame
-from pinwarp.session.outputs.exports import session_spline
+from pinwarp.session.outputs.replacing import refuse_to_replace
 from pinwarp.session.session import Session
-from pinwarp.session.study.batch import refuse_to_replace
+from pinwarp.session.warp.solved import solved
 
 WARPED = "_warped"
 
 
-def outputs_of(
-    inputs: Sequence[Path], out: Path, *, kept: Iterable[Path] = (), force: bool = False
-) -> tuple[Path, ...]:
-    """Return where each of some inputs goes; nothing is written yet.
+def outputs_of(inputs: Sequence[Path], out: Path, *, kept: Iterable[Path] = ()) -> tuple[Path, ...]:
+    """Return where each of some inputs goes; nothing is written yet, what is there may be replaced.
 
     Parameters
     ----------
@@ -38,13 +36,11 @@ def outputs_of(
         a folder: there ``femur.ply`` becomes ``femur_warped.ply``.
     kept
         Files that must not be replaced either, such as the session.
-    force
-        Let files that are there already be replaced; inputs never are.
 
     Raises
     ------
     PinwarpError
-        When an output is an input, would be written twice, or is there already.
+        When an output is an input, or would be written twice.
 
     Examples
     --------
@@ -63,10 +59,6 @@ def outputs_of(
             )
         taken[str(path).casefold()] = source
     refuse_to_replace([*inputs, *kept], outputs)
-    there = [path for path in outputs if path.exists()]
-    if there and not force:
-        more = f" (and {len(there) - 1} more)" if len(there) > 1 else ""
-        raise PinwarpError(f"{there[0]}{more} is there already: use --force to replace it.")
     return outputs
 
 
@@ -95,7 +87,7 @@ class FileWarper:
 
     def __init__(self, session: Session) -> None:
         self._unit = session.unit
-        self._spline: Spline = session_spline(session)
+        self._spline: Spline = solved(session).applied
         self._axes = "" if session.source is None else session.source.mirrored
         self._scale = 1.0 if session.source is None else session.source.scaled
         self._mesh = session.mesh(Side.SOURCE)

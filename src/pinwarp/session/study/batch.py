@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import closing
@@ -11,12 +10,14 @@ from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError, PinwarpError, words_of
 from pinwarp.core.landmarks import Role
-from pinwarp.io.manifest import Manifest
+from pinwarp.core.settings import WarpSettings
+from pinwarp.io.manifest import Manifest, Subject
 from pinwarp.io.meshes import MESH_SUFFIXES
 from pinwarp.io.summary_file import SummaryRow, read_summary, write_summary
+from pinwarp.session.outputs.replacing import refuse_to_replace
 from pinwarp.session.session import Session, to_record
 from pinwarp.session.study.subject import Outcome, Task, made_from, places_of, warp_subject
-from pinwarp.session.study.workers import Runner
+from pinwarp.session.study.workers import Runner, WorkEnded
 
 SUMMARY = "summary.csv"
 DONE, FAILED = "done", "failed"
@@ -33,9 +34,12 @@ class Tally:
     done, unchanged, failed
         Numbers of subjects.
     total
-        All of them; more than the sum of the others where the batch was interrupted.
+        All of them; more than the sum of the others where something is left to do.
     summary
         The table of results.
+    ended
+        Why the work ended before all was done, as a sentence; empty where it did not, or was
+        stopped.
     """
 
     done: int
@@ -43,6 +47,7 @@ class Tally:
     failed: int
     total: int
     summary: Path
+    ended: str = ""
 
     @property
     def is_interrupted(self) -> bool:
@@ -91,7 +96,7 @@ def plan(
     ...     read_session(sample_session()),
     ...     Path("/study/warped"),
     ... )
-    >>> task.mesh.name, task.session.warping_penalty
+    >>> task.mesh.name, task.session.settings.penalty
     ('anna_warped.ply', 0.5)
     """
     record = to_record(source)
@@ -113,10 +118,7 @@ def plan(
             manifest=manifest.path,
             session=replace(
                 shared,
-                warping_penalty=(
-                    shared.warping_penalty if subject.penalty is None else subject.penalty
-                ),
-                components=subject.components or shared.components,
+                settings=_settings(shared.settings, subject),
             ),
             mesh=folder / f"{subject.name}_warped{suffix}",
             passengers=(
@@ -133,24 +135,13 @@ def plan(
     return tasks
 
 
-def refuse_to_replace(inputs: Iterable[Path], outputs: Iterable[Path]) -> None:
-    """Raise when an output is one of the inputs.
-
-    Raises
-    ------
-    PinwarpError
-        With the file's name and the way out.
-
-    Examples
-    --------
-    >>> refuse_to_replace([Path("femur.ply")], [Path("warped/femur.ply")])
-    """
-    real = {os.path.realpath(path) for path in inputs}
-    for path in outputs:
-        if os.path.realpath(path) in real:
-            raise PinwarpError(
-                f"{path} would be replaced, but it is read: choose another folder for the output."
-            )
+def _settings(shared: WarpSettings, subject: Subject) -> WarpSettings:
+    """Return the settings for one subject: its row of the manifest goes before the source's."""
+    return replace(
+        shared,
+        penalty=shared.penalty if subject.penalty is None else subject.penalty,
+        components=subject.components or shared.components,
+    )
 
 
 def run(
@@ -164,7 +155,8 @@ def run(
     """Do what is to be done and keep the table of results up to date.
 
     A task is passed over where its row in the table says that it was made from the same inputs
-    and options, and its outputs are there. Where the runner is stopped, what was done stays.
+    and options, and its outputs are there. Where the runner is stopped or its cluster is gone,
+    what was done stays.
 
     Parameters
     ----------
@@ -198,6 +190,7 @@ def run(
         if task.subject.name not in rest:
             told(task, "unchanged", "")
     count = {DONE: 0, FAILED: 0}
+    ended = ""
     try:
         with closing(runner(warp_subject, waiting)) as results:
             for task, result in results:
@@ -205,6 +198,8 @@ def run(
                 summary.take(row)
                 count[row["status"]] += 1
                 told(task, row["status"], row.get("error", ""))
+    except WorkEnded as error:
+        ended = str(error)
     finally:
         summary.save()
     return Tally(
@@ -213,6 +208,7 @@ def run(
         failed=count[FAILED],
         total=len(tasks),
         summary=summary.path,
+        ended=ended,
     )
 
 
@@ -264,7 +260,7 @@ def _row(task: Task, result: Outcome | Exception) -> SummaryRow:
     distance = checked.distance
     figures = {
         "pairs": len(checked.pairs),
-        "penalty": task.session.warping_penalty,
+        "penalty": task.session.settings.penalty,
         "rms_residual": checked.rms_residual,
         "rms_leave_one_out": checked.rms_leave_one_out,
         "suggested_penalty": checked.suggested_penalty,

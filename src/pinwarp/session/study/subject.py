@@ -11,6 +11,8 @@ from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError, PinwarpError, words_of
 from pinwarp.core.landmarks import Landmark, Role, Side
+from pinwarp.core.names import look_alike_notes
+from pinwarp.core.words import counted, some_of
 from pinwarp.io.landmark_files import LandmarkReading, read_landmarks, write_landmarks
 from pinwarp.io.manifest import Subject
 from pinwarp.io.meshes import MeshFile, read_mesh, write_mesh
@@ -20,10 +22,8 @@ from pinwarp.session.importing.conversion import frame_notes
 from pinwarp.session.judging.check import Check, check
 from pinwarp.session.outputs.exports import warped_mesh, warped_passengers
 from pinwarp.session.session import Session, as_seen
+from pinwarp.session.warp.solved import solved
 from pinwarp.version import __version__
-
-# So many names are told, the others counted.
-NAMED = 3
 
 
 @dataclass(frozen=True)
@@ -116,10 +116,11 @@ def _warp(task: Task) -> tuple[Check, tuple[str, ...]]:
         session = session.with_mesh(Side.SOURCE, _source(task.session.source))
     if subject.destination_mesh is not None:
         session = session.with_mesh(Side.DESTINATION, read_mesh(subject.destination_mesh))
-    checked = check(session)
-    write_mesh(task.mesh, warped_mesh(session))
+    warp = solved(session)
+    checked = check(warp)
+    write_mesh(task.mesh, warped_mesh(warp))
     if task.passengers is not None:
-        write_landmarks(task.passengers, warped_passengers(session), Side.DESTINATION)
+        write_landmarks(task.passengers, warped_passengers(warp), Side.DESTINATION)
     return checked, notes
 
 
@@ -179,25 +180,21 @@ def with_destinations(
         raise FileFormatError(
             path,
             "None of its names is that of a landmark on the source. "
-            f"It has {_some(list(reading.names))}; the source has {_some(missing)}.",
+            f"It has {some_of(list(reading.names))}; the source has {some_of(missing)}.",
         )
     notes = [*reading.notes, *frame_notes(reading, session.unit)]
     if missing:
-        notes.append(f"{_landmarks(missing)} not in {path.name}: {_some(missing)}.")
+        notes.append(f"{_are(missing)} not in {path.name}: {some_of(missing)}.")
     if placed:
         unknown = list(placed)
-        notes.append(f"{_landmarks(unknown)} not on the source: {_some(unknown)}.")
+        notes.append(f"{_are(unknown)} not on the source: {some_of(unknown)}.")
+    notes += look_alike_notes((*missing, *placed))
     notes += [f"{path.name}, line {x.line} was skipped: {x.reason}." for x in reading.skipped]
     return session, tuple(notes)
 
 
-def _landmarks(names: Sequence[str]) -> str:
-    return "1 landmark is" if len(names) == 1 else f"{len(names)} landmarks are"
-
-
-def _some(names: Sequence[str]) -> str:
-    told = ", ".join(names[:NAMED])
-    return f"{told} and {len(names) - NAMED} more" if len(names) > NAMED else told
+def _are(names: Sequence[str]) -> str:
+    return f"{counted(len(names), 'landmark')} {'is' if len(names) == 1 else 'are'}"
 
 
 def made_from(task: Task) -> str:
@@ -216,19 +213,18 @@ def made_from(task: Task) -> str:
     Raises
     ------
     FileFormatError
-        When a file is missing; the message names the line of the manifest.
+        When a file is missing or the row cannot be used; the message names the line of the
+        manifest.
     """
     subject, session = task.subject, task.session
+    if subject.problem:
+        raise FileFormatError(task.manifest, subject.problem, subject.line)
     source = session.source
     parts = (
         __version__,
         None if source is None else (source.sha256, source.mirrored, source.scaled),
         tuple((x.name, x.source, x.role.value, x.enabled) for x in session.landmarks),
-        session.warping_penalty,
-        session.convention.value,
-        session.planar,
-        session.components.value,
-        session.blend,
+        session.settings,
         session.unit,
         _content(task, subject.destination_landmarks),
         _content(task, subject.destination_mesh),

@@ -1,4 +1,4 @@
-"""Doing the same to many things: in processes of this machine, or on a Dask cluster.
+"""Doing the same to many things, in processes of this machine.
 
 A runner takes a function and the tasks and yields each task with its result as they come, in any
 order. Function and tasks are pickled; a task whose process died comes with the error instead.
@@ -15,9 +15,8 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from functools import partial
 from multiprocessing import connection, get_context, parent_process
-from typing import Any, Protocol, TypeVar
+from typing import Protocol, TypeVar
 
 from threadpoolctl import threadpool_limits
 
@@ -26,9 +25,6 @@ from pinwarp.core.errors import PinwarpError
 T = TypeVar("T")
 R = TypeVar("R")
 
-# How often a task is begun again when it ends by an exception of the cluster.
-RETRIES = 2
-ANSWERS_WITHIN = "15s"
 # How soon it is noticed that no more is wanted, in seconds.
 LOOKS_UP_EVERY = 0.2
 
@@ -39,7 +35,11 @@ class Runner(Protocol):
     def __call__(
         self, function: Callable[[T], R], tasks: Sequence[T], /
     ) -> Generator[tuple[T, R | Exception]]:
-        """Yield tasks and results as they come."""
+        """Yield tasks and results as they come; raise WorkEnded where no more will."""
+
+
+class WorkEnded(PinwarpError):
+    """The work ended before all was done, by no fault of a task; what was done stays."""
 
 
 def cores() -> int:
@@ -146,7 +146,7 @@ def _be_a_worker() -> None:
     """Leave Ctrl+C to the first process, end when it is gone, and keep to one core."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    _keep_to_one_core()
+    keep_to_one_core()
 
 
 def _end_with_parent() -> None:
@@ -156,92 +156,13 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-def _keep_to_one_core() -> None:
-    """Let the processes share the cores, not their threads fight for them."""
-    threadpool_limits(1)
-    if "numba" not in sys.modules:
-        os.environ["NUMBA_NUM_THREADS"] = "1"
-
-
-def on_cluster(
-    function: Callable[[T], R],
-    tasks: Sequence[T],
-    *,
-    scheduler: str,
-    stop: threading.Event | None = None,
-) -> Generator[tuple[T, R | Exception]]:
-    """Run tasks on a Dask cluster that is there already.
-
-    What a worker was at when it died is begun again by another.
-
-    Parameters
-    ----------
-    function
-        Importable by its name where the workers are.
-    tasks
-        What it is called with.
-    scheduler
-        The address, such as ``tcp://10.0.0.1:8786``.
-    stop
-        Once it is set what is not done yet is cancelled.
-
-    Yields
-    ------
-    task, result
-
-    Raises
-    ------
-    PinwarpError
-        When ``distributed`` is not installed, or no scheduler answers.
-    """
-    try:
-        from distributed import Client, as_completed
-    except ImportError:
-        raise PinwarpError(
-            "Clusters need the package 'distributed': pip install 'pinwarp[cluster]'."
-        ) from None
-    try:
-        client = Client(scheduler, timeout=ANSWERS_WITHIN, set_as_default=False)
-    except (OSError, ValueError) as error:
-        raise PinwarpError(f"No Dask scheduler answers at {scheduler}: {error}") from error
-    stop = stop or threading.Event()
-    futures: list[Any] = []
-    try:
-        futures = client.map(partial(_on_one_core, function), tasks, pure=False, retries=RETRIES)
-        task_of = dict(zip((future.key for future in futures), tasks, strict=True))
-        done = as_completed(futures, loop=client.loop)
-        while done.count() and not stop.is_set():
-            if not done.has_ready():
-                stop.wait(LOOKS_UP_EVERY)
-                continue
-            future = next(done)
-            yield task_of[future.key], _result(future)
-            future.release()
-    finally:
-        client.cancel([future for future in futures if not future.done()])
-        client.close()
-
-
-def _on_one_core(function: Callable[[T], R], task: T) -> R:
-    _keep_to_one_core()
-    return function(task)
-
-
-def _result(future: Any) -> Any:
-    try:
-        return future.result()
-    except Exception as error:  # whatever ended it is this task's result; the others go on
-        return error
-
-
-def runner_of(jobs: int, scheduler: str | None, stop: threading.Event | None = None) -> Runner:
-    """Return the runner for a cluster where one is named, else for this machine.
+def keep_to_one_core() -> None:
+    """Let the processes share the cores, not their threads fight for them.
 
     Examples
     --------
-    >>> list(runner_of(1, None)(len, ["ab"]))
-    [('ab', 2)]
+    >>> keep_to_one_core()
     """
-    if scheduler is not None:
-        return partial(on_cluster, scheduler=scheduler, stop=stop)
-    return partial(on_this_machine, jobs=jobs, stop=stop)
+    threadpool_limits(1)
+    if "numba" not in sys.modules:
+        os.environ["NUMBA_NUM_THREADS"] = "1"

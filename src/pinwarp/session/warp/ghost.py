@@ -6,13 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pinwarp.core.errors import RangeError
 from pinwarp.core.landmarks import Landmark, Position, Side, as_position
 from pinwarp.core.prediction import inverse_warp, prediction_of
 from pinwarp.core.spline import PenaltyConvention
 from pinwarp.session.warp.solver import WarpResult
 
 # With fewer pairs a prediction says more about the pairs than about the bone.
-LEAST_PAIRS = 3
+FEWEST_PAIRS = 3
 
 
 @dataclass(frozen=True)
@@ -53,11 +54,18 @@ def ghost_of(landmark: Landmark | None, side: Side, result: WarpResult) -> Ghost
     Ghost or None
         None where there is nothing to predict from, or the warp cannot be inverted there.
     """
+    try:
+        return _predicted(landmark, side, result)
+    except RangeError:
+        return None
+
+
+def _predicted(landmark: Landmark | None, side: Side, result: WarpResult) -> Ghost | None:
     factor, spline = result.factor, result.spline
     if landmark is None or landmark.position(side) is not None or factor is None or spline is None:
         return None
     known = landmark.position(side.other)
-    if known is None or len(factor.source) < LEAST_PAIRS:
+    if known is None or len(factor.source) < FEWEST_PAIRS:
         return None
     if side is Side.DESTINATION:
         source = np.array([known])

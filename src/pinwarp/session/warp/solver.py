@@ -8,19 +8,26 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.core.components import Components, applied, as_drawn
-from pinwarp.core.errors import PinwarpError
+from pinwarp.core.components import Components, applied
+from pinwarp.core.errors import PinwarpError, RangeError
 from pinwarp.core.factor import SourceFactor, factorise
-from pinwarp.core.landmarks import Position, Role, Side
-from pinwarp.core.live import Influence, PenaltySweep, PreviewPoints, can_follow, preview
+from pinwarp.core.landmarks import Position, Side
+from pinwarp.core.lengths import rms, rounding_among
+from pinwarp.core.live import (
+    Influence,
+    PenaltySweep,
+    PreviewPoints,
+    can_follow,
+    preview,
+    suits_single,
+)
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import PenaltyConvention, Spline, solve
 from pinwarp.session.session import Session
 
 Matrix = NDArray[np.float64]
 
-# Residuals below this share of the largest coordinate are 0.
-ROUNDING = 1e-9
 # Up to here the eigendecomposition is done along with the solve; above, once the hand rests.
 EAGER_MODES = 300
 
@@ -31,14 +38,10 @@ class WarpInputs:
 
     source: tuple[Position, ...]
     destination: tuple[Position, ...]
-    penalty: float
-    convention: PenaltyConvention
-    planar: bool
+    settings: WarpSettings
     mesh: Mesh | None
     stand_in: Mesh | None
     passengers: tuple[Position, ...]
-    components: Components = Components.FULL
-    blend: float = 1.0
 
     @classmethod
     def of(cls, session: Session, stand_in: Mesh | None = None) -> WarpInputs:
@@ -55,24 +58,13 @@ class WarpInputs:
         return cls(
             source=tuple(pair.source for pair in pairs if pair.source is not None),
             destination=tuple(pair.destination for pair in pairs if pair.destination is not None),
-            penalty=session.warping_penalty,
-            convention=session.convention,
-            planar=session.planar,
+            settings=session.settings.drawn,
             mesh=session.mesh(Side.SOURCE),
             stand_in=stand_in,
             passengers=tuple(
-                landmark.source
-                for landmark in session.landmarks
-                if landmark.role is Role.PASSENGER and landmark.source is not None
+                passenger.source for passenger in session.passengers if passenger.source is not None
             ),
-            components=as_drawn(session.components),
-            blend=session.blend,
         )
-
-    @property
-    def is_whole(self) -> bool:
-        """Whether the warp is applied as it is solved."""
-        return self.components is Components.FULL and self.blend == 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,18 +107,16 @@ class WarpResult:
     @property
     def rms_residual(self) -> float | None:
         """Root mean square of the residuals, in mesh units."""
-        if self.residuals is None:
-            return None
-        return float(np.sqrt(np.mean(self.residuals**2)))
+        return None if self.residuals is None else rms(self.residuals)
 
     @property
     def flexibility(self) -> float | None:
         """Share of non-affine freedom left; None where the penalty has nothing to act on."""
         if self.factor is None or not self.factor.has_modes or not len(self.factor.poles):
             return None
-        if self.inputs.convention is PenaltyConvention.OPYNSIM and self.inputs.penalty > 0:
+        if not self.inputs.settings.is_regular:
             return None
-        return self.factor.flexibility(self.inputs.penalty)
+        return self.factor.flexibility(self.inputs.settings.penalty)
 
 
 class WarpSolver:
@@ -155,20 +145,23 @@ class WarpSolver:
             return last
         # A new state of rest: the shortcuts from the old one are of no more use.
         self._influence = None
-        result = self._solve_landmarks(inputs)
+        result = self.solve_landmarks(inputs)
         if result.factor is not None and result.shown is not None:
             if len(inputs.source) <= EAGER_MODES:
                 _ = result.factor.modes
             kept = last if last is not None and last.shown is result.shown else WarpResult(inputs)
-            result = replace(
-                result,
-                vertices=self._unless_kept(
-                    result.shown, inputs.mesh, kept.inputs.mesh, kept.vertices
-                ),
-                stand_in=self._unless_kept(
-                    result.shown, inputs.stand_in, kept.inputs.stand_in, kept.stand_in
-                ),
-            )
+            try:
+                result = replace(
+                    result,
+                    vertices=self._unless_kept(
+                        result.shown, inputs.mesh, kept.inputs.mesh, kept.vertices
+                    ),
+                    stand_in=self._unless_kept(
+                        result.shown, inputs.stand_in, kept.inputs.stand_in, kept.stand_in
+                    ),
+                )
+            except RangeError as error:
+                result = WarpResult(inputs, problem=str(error))
         self._last = self._moving = result
         return result
 
@@ -178,14 +171,18 @@ class WarpSolver:
         Compared with the last state of rest, a changed penalty is swept, one changed destination
         is followed, anything else is evaluated directly. Only the stand-in is warped, if there is.
         """
-        result = self._solve_landmarks(inputs)
+        result = self.solve_landmarks(inputs)
         self._moving = result
         mesh = inputs.stand_in or inputs.mesh
         if result.factor is None or result.shown is None or mesh is None:
             return result
-        vertices = self._shortcut(inputs, result.factor, mesh)
-        if vertices is None:
-            vertices = self._evaluate(result.shown, mesh)
+        try:
+            vertices = self._shortcut(inputs, result.factor, result.shown, mesh)
+            if vertices is None:
+                vertices = self._evaluate(result.shown, mesh)
+        except RangeError as error:
+            self._moving = WarpResult(inputs, problem=str(error))
+            return self._moving
         if inputs.stand_in is not None:
             return replace(result, stand_in=vertices)
         return replace(result, vertices=vertices)
@@ -196,21 +193,21 @@ class WarpSolver:
             _ = result.factor.modes
         return result
 
-    def _solve_landmarks(self, inputs: WarpInputs) -> WarpResult:
+    def solve_landmarks(self, inputs: WarpInputs) -> WarpResult:
         """Solve, without warping any mesh."""
         if not inputs.source:
             return WarpResult(inputs)
         try:
             factor, spline = self._spline(inputs)
             shown = self._applied(inputs, factor, spline)
+            landmarks = shown.evaluate(np.array(inputs.source))
+            passengers = shown.evaluate(np.array(inputs.passengers).reshape(-1, 3))
         except PinwarpError as error:
             return WarpResult(inputs, problem=str(error))
-        source, passengers = np.array(inputs.source), np.array(inputs.passengers).reshape(-1, 3)
         destination = np.array(inputs.destination)
-        landmarks = shown.evaluate(source)
         residuals = np.linalg.norm(landmarks - destination, axis=1)
         # What is only rounding must not sort rows or draw bars.
-        residuals[residuals < ROUNDING * np.abs(destination).max()] = 0.0
+        residuals[residuals < rounding_among(destination)] = 0.0
         return WarpResult(
             inputs=inputs,
             factor=factor,
@@ -218,7 +215,7 @@ class WarpSolver:
             shown=shown,
             landmarks=landmarks,
             residuals=residuals,
-            passengers=shown.evaluate(passengers) if len(passengers) else passengers,
+            passengers=passengers,
         )
 
     def _applied(self, inputs: WarpInputs, factor: SourceFactor, spline: Spline) -> Spline:
@@ -227,26 +224,27 @@ class WarpSolver:
                 known is not None
                 and known.shown is not None
                 and known.spline is spline
-                and (known.inputs.components, known.inputs.blend)
-                == (inputs.components, inputs.blend)
+                and known.inputs.settings == inputs.settings
             ):
                 return known.shown
-        return applied(spline, factor, inputs.destination, inputs.components, inputs.blend)
+        settings = inputs.settings
+        return applied(spline, factor, inputs.destination, settings.components, settings.blend)
 
     def _spline(self, inputs: WarpInputs) -> tuple[SourceFactor, Spline]:
         factor = None
         for known in (self._moving, self._last):
             if known is None or known.factor is None:
                 continue
-            if (known.inputs.source, known.inputs.planar) == (inputs.source, inputs.planar):
+            if _factorises_the_same(known.inputs, inputs):
                 factor = known.factor
                 if known.spline is not None and _solves_the_same(known.inputs, inputs):
                     return factor, known.spline
+        settings = inputs.settings
         if factor is None:
-            factor = factorise(inputs.source, planar=inputs.planar)
+            factor = factorise(inputs.source, planar=settings.planar)
             self.factorisations += 1
         self.solves += 1
-        return factor, solve(factor, inputs.destination, inputs.penalty, inputs.convention)
+        return factor, solve(factor, inputs.destination, settings.penalty, settings.convention)
 
     def _unless_kept(
         self,
@@ -272,18 +270,23 @@ class WarpSolver:
         return self._points[mesh]
 
     def _shortcut(
-        self, inputs: WarpInputs, factor: SourceFactor, mesh: Mesh
+        self, inputs: WarpInputs, factor: SourceFactor, shown: Spline, mesh: Mesh
     ) -> NDArray[np.float32] | None:
         last = self._last
         if last is None or last.spline is None:
             return None
         was = last.inputs
-        if not (was.is_whole and inputs.is_whole):
+        now = inputs.settings
+        if not now.is_whole or was.source != inputs.source:
             return None
-        if (was.source, was.planar) != (inputs.source, inputs.planar):
+        # Nothing but the penalty may differ: whatever else is set, now or in times to come.
+        if replace(was.settings, penalty=now.penalty) != now:
+            return None
+        points = self._preview_points(mesh)
+        if not (suits_single(last.spline, points) and suits_single(shown, points)):
             return None
         if was.destination == inputs.destination:
-            if inputs.convention is PenaltyConvention.REGULARISING:
+            if now.convention is PenaltyConvention.REGULARISING:
                 return self._swept(inputs, factor, mesh)
             return None
         moved = [
@@ -291,24 +294,23 @@ class WarpSolver:
             for row, (a, b) in enumerate(zip(was.destination, inputs.destination, strict=True))
             if a != b
         ]
-        same_penalty = (was.penalty, was.convention) == (inputs.penalty, inputs.convention)
-        if len(moved) != 1 or not same_penalty or not can_follow(factor):
+        if len(moved) != 1 or was.settings != now or not can_follow(factor):
             return None
         return self._followed(inputs, last.spline, factor, mesh, moved[0])
 
     def _swept(self, inputs: WarpInputs, factor: SourceFactor, mesh: Mesh) -> NDArray[np.float32]:
-        key = (inputs.source, inputs.planar, inputs.destination, id(mesh))
+        key = (replace(inputs.settings, penalty=0.0), inputs.source, inputs.destination, mesh)
         if self._sweep is None or self._sweep[0] != key:
             # Free the old basis before the new one is made: each may be 100 MB.
             self._sweep = self._influence = None
             points = self._preview_points(mesh)
             self._sweep = (key, PenaltySweep(factor, inputs.destination, points))
-        return self._sweep[1].at(inputs.penalty)
+        return self._sweep[1].at(inputs.settings.penalty)
 
     def _followed(
         self, inputs: WarpInputs, spline: Spline, factor: SourceFactor, mesh: Mesh, row: int
     ) -> NDArray[np.float32]:
-        key = (row, id(mesh))
+        key = (row, mesh)
         if self._influence is None or self._influence[0] != key:
             assert self._last is not None, "only a warp at rest is followed"
             self._sweep = self._influence = None
@@ -326,8 +328,14 @@ def is_rounding(length: float, place: Position) -> bool:
     >>> is_rounding(1e-12, (0.0, 40.0, 3.0)), is_rounding(1e-3, (0.0, 40.0, 3.0))
     (True, False)
     """
-    return length < ROUNDING * max(*map(abs, place), 1e-300)
+    return length < max(rounding_among(place), 1e-300)
+
+
+def _factorises_the_same(a: WarpInputs, b: WarpInputs) -> bool:
+    return (a.source, a.settings.planar) == (b.source, b.settings.planar)
 
 
 def _solves_the_same(a: WarpInputs, b: WarpInputs) -> bool:
-    return (a.destination, a.penalty, a.convention) == (b.destination, b.penalty, b.convention)
+    """Whether two warps are one, of which more or less is applied."""
+    wholes = [replace(x.settings, components=Components.FULL, blend=1.0) for x in (a, b)]
+    return a.destination == b.destination and wholes[0] == wholes[1]

@@ -1,0 +1,118 @@
+"""XML from strangers: nothing that could make a small file endless is followed."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Callable, Mapping
+from xml.parsers import expat
+
+DEEPEST = 100
+MOST = 200_000
+"""Deeper, and more elements, than landmarks or a mesh have: each takes memory of its own."""
+
+_BUFFER = 1 << 20
+
+
+class XmlError(Exception):
+    """What is wrong with the XML, as a clause, and the line."""
+
+    def __init__(self, reason: str, line: int) -> None:
+        super().__init__(reason)
+        self.line = line
+
+
+def parse_xml(
+    data: str | bytes,
+    begin: Callable[[str, Mapping[str, str], int], object],
+    end: Callable[[str], object] = lambda _tag: None,
+    text: Callable[[str], object] | None = None,
+) -> None:
+    """Walk through XML.
+
+    Entities, defaults for attributes and whatever else a document can declare of its own are
+    refused; nothing outside of it is ever looked at.
+
+    Parameters
+    ----------
+    data
+        All of it; text is taken as it is, whatever encoding it says.
+    begin, end, text
+        Called with the tag, attributes and line of an element, with the tag of one that ends, and
+        with what stands in between.
+
+    Raises
+    ------
+    XmlError
+        When it is not XML, declares something, or has too many elements or too deep ones.
+
+    Examples
+    --------
+    >>> parse_xml('<a><b x="1"/></a>', print)
+    a {} 1
+    b {'x': '1'} 1
+    """
+    parser = expat.ParserCreate()
+    parser.buffer_text = True
+    parser.buffer_size = _BUFFER
+    depth = count = 0
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal depth, count
+        depth += 1
+        count += 1
+        line = parser.CurrentLineNumber
+        if depth > DEEPEST:
+            raise XmlError("its elements are nested too deeply", line)
+        if count > MOST:
+            raise XmlError(f"it has more than {MOST:,} elements", line)
+        begin(tag, attributes, line)
+
+    def leave(tag: str) -> None:
+        nonlocal depth
+        depth -= 1
+        end(tag)
+
+    def refuse(*_declared: object) -> None:
+        words = "it declares entities or defaults of its own, which it has no use for"
+        raise XmlError(words, parser.CurrentLineNumber)
+
+    parser.StartElementHandler = start
+    parser.EndElementHandler = leave
+    if text is not None:
+        parser.CharacterDataHandler = text
+    # Defaults of attributes grow a file as entities do: a long one comes with every element.
+    parser.EntityDeclHandler = refuse
+    parser.AttlistDeclHandler = refuse
+    parser.ElementDeclHandler = refuse
+    parser.NotationDeclHandler = refuse
+    try:
+        parser.Parse(data, True)
+    except expat.ExpatError as error:
+        reason = expat.ErrorString(error.code)
+        raise XmlError(f"this is not XML, or it was cut off ({reason})", error.lineno) from None
+    except (ValueError, LookupError) as error:
+        # Encodings that Python does not know, or that expat cannot be taught.
+        raise XmlError(f"this is not XML, or it was cut off ({error})", 1) from None
+
+
+def xml_tree(data: str | bytes) -> ET.Element:
+    """Return the root of XML, read as by :func:`parse_xml`.
+
+    Raises
+    ------
+    XmlError
+        As :func:`parse_xml`.
+
+    Examples
+    --------
+    >>> xml_tree("<a><b>text</b></a>")[0].text
+    'text'
+    """
+    builder = ET.TreeBuilder()
+    parse_xml(
+        data,
+        lambda tag, attributes, _line: builder.start(tag, dict(attributes)),
+        builder.end,
+        builder.data,
+    )
+    return builder.close()

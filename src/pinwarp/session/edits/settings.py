@@ -1,0 +1,68 @@
+"""How the warp is solved and applied, and the unit it is told in."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from pinwarp.core.components import Components
+from pinwarp.core.settings import WarpSettings
+from pinwarp.core.spline import PenaltyConvention
+from pinwarp.session.session import Session
+
+__all__ = [
+    "UNITS",
+    "set_blend",
+    "set_components",
+    "set_convention",
+    "set_penalty",
+    "set_planar",
+    "set_unit",
+]
+
+UNITS = ("mm", "cm", "m")
+
+
+def set_penalty(session: Session, penalty: float) -> Session:
+    """Set the warping penalty, in mesh units.
+
+    Raises
+    ------
+    PenaltyError
+        When it is negative or NaN.
+    """
+    return _with(session, replace(session.settings, penalty=penalty))
+
+
+def set_convention(session: Session, convention: PenaltyConvention) -> Session:
+    """Choose the equation that the penalty enters."""
+    return _with(session, replace(session.settings, convention=convention))
+
+
+def set_planar(session: Session, planar: bool) -> Session:
+    """Treat nearly planar landmarks as planar, or not."""
+    return _with(session, replace(session.settings, planar=planar))
+
+
+def set_components(session: Session, components: Components) -> Session:
+    """Choose what of the warp is applied, on the screen and in exports."""
+    return _with(session, replace(session.settings, components=components))
+
+
+def set_blend(session: Session, blend: float) -> Session:
+    """Apply the components in part: 0 is the aligned source, 1 all of them.
+
+    Raises
+    ------
+    PinwarpError
+        When the blend is not from 0 to 1.
+    """
+    return _with(session, replace(session.settings, blend=blend))
+
+
+def set_unit(session: Session, unit: str) -> Session:
+    """Name the unit of the meshes."""
+    return replace(session, unit=unit)
+
+
+def _with(session: Session, settings: WarpSettings) -> Session:
+    return replace(session, settings=settings)
