@@ -150,7 +150,7 @@ class Driver:
 
     def settle(self) -> None:
         """Wait until what was asked for is done and painted."""
-        self.qtbot.waitUntil(lambda: self.window.is_settled, timeout=300_000)
+        self.qtbot.waitUntil(lambda: self.window.is_settled, timeout=30_000)
         for _ in range(3):
             QApplication.processEvents()
 

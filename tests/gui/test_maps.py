@@ -147,6 +147,7 @@ def test_the_opacity_of_a_map_is_its_own(sample):
     assert slider.value() == 100
     for _ in range(2):
         QTest.keyClick(slider, Qt.Key.Key_PageDown)
+    sample.settle()
     assert sample.editor.view.map_opacity == 0.8
     assert overlay(sample).prop.opacity == 0.8
     choose(sample, None)

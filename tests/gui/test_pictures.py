@@ -12,9 +12,10 @@ from qtpy.QtWidgets import QApplication
 
 from pinwarp.core.components import Components
 from pinwarp.core.landmarks import Side
+from pinwarp.gui.exporting.animation import AnimationOrder, Motion, animation_steps, ends_of
 from pinwarp.gui.exporting.offscreen import Offscreen
 from pinwarp.gui.exporting.picture_dialogs import AnimationDialog, PictureDialog
-from pinwarp.gui.scene.drawables import Arrows
+from pinwarp.gui.scene.drawables import Arrows, FoldedSurface, GridLines, Overlay
 from pinwarp.session import edits
 
 DESTINATION = Side.DESTINATION
@@ -298,6 +299,27 @@ def test_a_blend_goes_from_the_aligned_source_to_the_warp_and_back(sample, tmp_p
         sample, tmp_path / "w.png", 160, 160, view=2, off=("landmarks", "framed", "transparent")
     )
     assert apart(frames[6], warped[..., :3].astype(int)) < 0.01
+
+
+def test_a_blend_leaves_out_what_belongs_to_the_whole_warp_and_would_stand_still(
+    sample, monkeypatch
+):
+    view, shown = sample.window.viewports[DESTINATION], []
+    vertices = view.drawn(Overlay).full.vertices
+    folded = FoldedSurface(vertices[:3], np.array([[0, 1, 2]]), np.array([[0, 1], [1, 2], [0, 2]]))
+    view.show_scene(view.scene.with_(folded, GridLines(np.zeros((2, 3, 3)))))
+    monkeypatch.setattr(Offscreen, "show", lambda _copy, scene: shown.append(scene))
+    order = AnimationOrder(Motion.BLEND, 32, 32, frames=4)
+    for _ in animation_steps(order, view, ends_of(sample.session)):
+        pass
+    assert len(shown) == 4
+    for scene in shown:
+        assert scene.of(FoldedSurface) is None
+        assert scene.of(GridLines) is None
+        assert scene.of(Overlay).visible
+    assert np.allclose(shown[2].of(Overlay).full.vertices, vertices, atol=1e-3)
+    assert not np.allclose(shown[0].of(Overlay).full.vertices, vertices, atol=1e-3)
+    assert view.drawn(Overlay).full.vertices is vertices, "the window's own stays as it is"
 
 
 def test_what_would_not_move_is_refused(sample, tmp_path):
