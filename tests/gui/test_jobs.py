@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 
 import pytest
 
@@ -68,6 +69,29 @@ def test_a_result_that_comes_after_closing_goes_nowhere(qapp, qtbot, gate):
     jobs.computed.connect(arrived.append)
     jobs.request("late")
     gate.set()
+    jobs.shut_down()
+    qapp.processEvents()
+    assert arrived == []
+
+
+@pytest.mark.parametrize("kind", [LatestWins, SlowJob])
+def test_a_result_that_is_on_its_way_when_the_window_closes_goes_nowhere(qapp, kind):
+    arrived, computed = [], threading.Event()
+
+    def compute(_request):
+        computed.set()
+        return "late"
+
+    if kind is LatestWins:
+        jobs = LatestWins(compute)
+        jobs.computed.connect(arrived.append)
+        jobs.request("any")
+    else:
+        jobs = SlowJob()
+        jobs.run("any", compute, arrived.append, arrived.append)
+    assert computed.wait(60)
+    # Time for the worker to hand it over, but no event loop to take it.
+    time.sleep(0.2)
     jobs.shut_down()
     qapp.processEvents()
     assert arrived == []

@@ -359,6 +359,19 @@ def test_the_key_for_renaming_leaves_a_name_that_is_being_typed_alone(four):
     assert four.shown() == ["b", "a10", "apex", "c"]
 
 
+def test_a_name_that_does_not_fit_the_filter_is_taken_and_leaves_the_table(four):
+    four.table.set_filter("a")
+    four.click("a9")
+    four.press(Qt.Key.Key_F2)
+    line = four.table.findChild(QLineEdit)
+    line.selectAll()
+    QTest.keyClicks(line, "zz")
+    QTest.keyClick(line, Qt.Key.Key_Tab)
+    four.user.settle()
+    assert [landmark.name for landmark in four.session.landmarks] == ["b", "a10", "zz", "c"]
+    assert four.shown() == ["a10"]
+
+
 def test_many_are_renamed_by_a_pattern(four):
     four.click("b")
     four.click("a9", modifier=SHIFT)

@@ -64,7 +64,7 @@ class LatestWins(QObject):
         self._outcome = _Outcome()
         self._outcome.finished.connect(self._on_finished)
         self._waiting: list[Any] = []
-        self._busy = False
+        self._busy = self._is_shut_down = False
 
     @property
     def is_idle(self) -> bool:
@@ -89,6 +89,9 @@ class LatestWins(QObject):
 
     def _on_finished(self, _number: int, result: Any, error: Exception | None) -> None:
         self._busy = False
+        if self._is_shut_down:
+            # Qt delivers what was on its way before the disconnection.
+            return
         if self._waiting:
             self._start(self._waiting.pop())
         if error is not None:
@@ -98,6 +101,7 @@ class LatestWins(QObject):
 
     def shut_down(self) -> None:
         """Forget what waits and let the running computation end."""
+        self._is_shut_down = True
         self._waiting.clear()
         self._outcome.finished.disconnect(self._on_finished)
         self._pool.waitForDone()
@@ -162,6 +166,9 @@ class SlowJob(QObject):
         self._cancel.set()
 
     def _on_finished(self, number: int, result: Any, error: Exception | None) -> None:
+        if number not in self._handlers:
+            # Shut down: Qt delivers what was on its way before the disconnection.
+            return
         done, failed = self._handlers.pop(number)
         if self.is_idle:
             self.ended.emit()
@@ -173,5 +180,6 @@ class SlowJob(QObject):
     def shut_down(self) -> None:
         """Cancel what runs and wait for it."""
         self.cancel()
+        self._handlers.clear()
         self._outcome.finished.disconnect(self._on_finished)
         self._pool.waitForDone()
