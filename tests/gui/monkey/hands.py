@@ -229,7 +229,7 @@ class Hands:
     # The table, menus and other widgets
 
     def _cell(self, rng: random.Random) -> str:
-        table = self._window().table
+        table = self._window().parts.table.table
         if not table.isVisible():
             dock = self._window().findChild(QDockWidget, "landmarks")
             dock.show()

@@ -19,7 +19,7 @@ from qtpy.QtWidgets import QApplication
 from tests.gui.monkey.answers import Answers
 from tests.gui.monkey.files import Files
 from tests.gui.monkey.hands import Hands
-from tests.gui.monkey.watch import Watch
+from tests.gui.monkey.watch import Events, Watch
 from vtkmodules.vtkCommonCore import vtkObjectBase
 
 from pinwarp.gui.window.main_window import MainWindow
@@ -43,6 +43,7 @@ class Figures:
     """What is counted at a check."""
 
     step: int
+    events: int
     megabytes: float
     top_level: int
     objects: int
@@ -87,21 +88,29 @@ class Monkey:
         self.files = Files(folder / "files", random.Random(seed))
         self.answers = Answers(self.files, lambda: self._rng)
         self._hands = Hands(lambda: self.window, self.files, self.answers)
+        self._events = Events()
         self._start: Session | None = None
         self.figures: list[Figures] = []
         self.window = self._fresh_window()
 
-    def play(self, steps: int) -> None:
-        """Do so many random things, and raise :class:`Broken` at the first that breaks."""
+    def play(self, events: int) -> None:
+        """Do random things, until so many events; raise :class:`Broken` at the first that breaks.
+
+        A step is a gesture of one event or many, such as a drag.
+        """
         with self._watch:
+            QApplication.instance().installEventFilter(self._events)
             try:
                 start = self._count(0, 0)
                 print(start, flush=True)
-                for number in range(1, steps + 1):
+                number = 0
+                while self._events.count < events:
+                    number += 1
                     self._step(number)
-                    if number % CHECK_EVERY == 0 or number == steps:
+                    if number % CHECK_EVERY == 0 or self._events.count >= events:
                         self._check(number, start)
             finally:
+                QApplication.instance().removeEventFilter(self._events)
                 self.answers.stop()
 
     def _step(self, number: int) -> None:
@@ -186,8 +195,8 @@ class Monkey:
         for what, more in MOST_MORE.items():
             before, now = getattr(start, what), getattr(figures, what)
             self._require(now <= before + more, f"{what} grew from {before} to {now}")
-        warm = [f.megabytes for f in self.figures if f.step <= WARM_AFTER]
-        if number > WARM_AFTER:
+        warm = [f.megabytes for f in self.figures if f.events <= WARM_AFTER]
+        if warm and figures.events > WARM_AFTER:
             self._require(
                 figures.megabytes <= MOST_GROWTH * max(warm),
                 f"memory grew from {max(warm):.0f} to {figures.megabytes:.0f} MB",
@@ -238,6 +247,7 @@ class Monkey:
         ctypes.CDLL(None).malloc_trim(0)
         return Figures(
             step=number,
+            events=self._events.count,
             megabytes=psutil.Process().memory_info().rss / 2**20,
             top_level=len(tops),
             objects=sum(1 + len(top.findChildren(QObject)) for top in tops if top.parent() is None),

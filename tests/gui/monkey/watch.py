@@ -8,7 +8,7 @@ import threading
 import traceback
 from types import TracebackType
 
-from qtpy.QtCore import qInstallMessageHandler
+from qtpy.QtCore import QEvent, QObject, qInstallMessageHandler
 from vtkmodules.vtkCommonCore import vtkFileOutputWindow, vtkOutputWindow
 
 # Of the platform, and true of any window under a bare X server.
@@ -78,6 +78,35 @@ class Watch:
     def _on_message(self, kind: object, _context: object, text: str) -> None:
         if not any(words in text for words in _HARMLESS):
             self.seen.append(f"Qt says ({kind}): {text}")
+
+
+class Events(QObject):
+    """Counts the events of mouse, wheel and keyboard that reach the program.
+
+    One that a widget hands on to its parent is the same one.
+    """
+
+    KINDS = (
+        QEvent.Type.MouseButtonPress,
+        QEvent.Type.MouseButtonRelease,
+        QEvent.Type.MouseButtonDblClick,
+        QEvent.Type.MouseMove,
+        QEvent.Type.Wheel,
+        QEvent.Type.KeyPress,
+        QEvent.Type.KeyRelease,
+    )
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.count = 0
+        self._last: object = None
+
+    def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
+        if event.type() in self.KINDS:
+            this = (event.type(), event.timestamp())
+            self.count += this != self._last
+            self._last = this
+        return False
 
 
 class _Logged(logging.Handler):
