@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -70,6 +72,33 @@ def test_the_stand_in_is_drawn_while_the_slider_moves_and_the_mesh_when_it_rests
     # The change-over is no jump: the stand-in lies where the mesh lies.
     assert np.allclose(coarse.min(axis=0), full.min(axis=0), atol=3)
     assert np.allclose(coarse.max(axis=0), full.max(axis=0), atol=3)
+
+
+def test_a_warp_at_rest_that_comes_late_does_not_end_the_stand_in_of_the_next_drag(
+    user, monkeypatch
+):
+    user.open_sample()
+    monkeypatch.setattr(canvas, "SLOW_FRAME", 0.0)
+    viewport, presenter = user.window.viewports[Side.DESTINATION], user.window.presenter
+    solve, may_end = presenter.solver.solve, threading.Event()
+
+    def held(inputs):
+        assert may_end.wait(60)
+        return solve(inputs)
+
+    monkeypatch.setattr(presenter.solver, "solve", held)
+    seen = []
+    presenter.result_changed.connect(
+        lambda _result, at_rest, _quality: seen.append((at_rest, viewport.is_coarse))
+    )
+    user.editor.commit(edits.set_penalty(user.session, 3.0), "Change penalty")
+    user.editor.preview(edits.set_penalty(user.session, 5.0))
+    may_end.set()
+    user.qtbot.waitUntil(lambda: bool(seen), timeout=60_000)
+    assert seen[0] == (True, True)
+    user.editor.commit(user.session, "Change penalty")
+    user.settle()
+    assert not viewport.is_coarse
 
 
 def test_the_stand_in_is_drawn_while_the_camera_orbits(large):
