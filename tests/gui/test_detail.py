@@ -79,7 +79,7 @@ def test_a_warp_at_rest_that_comes_late_does_not_end_the_stand_in_of_the_next_dr
 ):
     user.open_sample()
     monkeypatch.setattr(canvas, "SLOW_FRAME", 0.0)
-    viewport, presenter = user.window.viewports[Side.DESTINATION], user.window.presenter
+    viewport, presenter = user.window.viewports[Side.DESTINATION], user.window.parts.warps
     solve, may_end = presenter.solver.solve, threading.Event()
 
     def held(inputs):
