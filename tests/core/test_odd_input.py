@@ -293,7 +293,7 @@ def test_affine_terms_are_copies_as_in_opynsim():
     mine = warp.a2
     mine *= 7
     assert warp.a1 is not warp.a1
-    assert warp.warp_point([1, 2, 3]).tolist() == before.tolist()
+    assert warp.warp_point([1, 2, 3]) == pytest.approx(before, rel=1e-12)
     assert hash(warp) == mark
     moved = dataclasses.replace(warp, a1=warp.a1 + np.eye(3)[0])
     assert moved.warp_point([1, 2, 3]) == pytest.approx(before + np.eye(3)[0])
@@ -310,7 +310,8 @@ def test_coefficients_can_be_copied_and_pickled(again):
     other = again(warp)
     assert other == warp
     assert hash(other) == hash(warp)
-    assert other.warp_point([1, 2, 3]).tolist() == warp.warp_point([1, 2, 3]).tolist()
+    # The compiled way, which begins after some calls, rounds otherwise in the last digit.
+    assert other.warp_point([1, 2, 3]) == pytest.approx(warp.warp_point([1, 2, 3]), rel=1e-12)
 
 
 def test_coefficients_made_by_hand_are_looked_at():

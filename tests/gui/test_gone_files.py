@@ -78,7 +78,7 @@ def test_a_mesh_that_is_gone_is_told_when_the_session_is_saved(saved, sample_cop
     save(saved)
     message = saved.window.statusBar().currentMessage()
     assert message.startswith(f"Saved {sample_copy.name}, but its mesh femur_generic.ply is not in")
-    assert read_session(sample_copy).warping_penalty == saved.session.settings.penalty
+    assert read_session(sample_copy).settings.penalty == saved.session.settings.penalty
     # What was read is still there to be warped.
     saved.dialogs.saves = [tmp_path / "warped.stl"]
     saved.trigger("export_mesh")

@@ -149,6 +149,7 @@ def test_the_opacity_of_a_map_is_its_own(sample):
         QTest.keyClick(slider, Qt.Key.Key_PageDown)
     sample.settle()
     assert sample.editor.view.map_opacity == 0.8
+    sample.settle()
     assert overlay(sample).prop.opacity == 0.8
     choose(sample, None)
     assert sample.editor.view.opacity == before

@@ -92,7 +92,7 @@ def test_a_sweep_is_not_taken_for_that_of_a_mesh_gone_by():
         mesh = ball.with_vertices(ball.vertices * (1 + 0.01 * i))
         session = Session(landmarks=pairs())
         rest = replace(WarpInputs.of(session), mesh=mesh)
-        swept = replace(rest, penalty=5.0)
+        swept = replace(rest, settings=replace(rest.settings, penalty=5.0))
         solver.solve(rest)
         vertices = solver.preview(swept).vertices
         assert np.abs(vertices - WarpSolver().solve(swept).vertices).max() < 1e-2
