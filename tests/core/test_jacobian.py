@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -7,6 +9,7 @@ from hypothesis import strategies as st
 from tests.core.strategies import landmark_pairs
 
 from pinwarp.core import kernel
+from pinwarp.core.errors import RangeError
 from pinwarp.core.jacobian import determinants, jacobians, stretches
 from pinwarp.core.spline import factorise, identity, solve
 
@@ -74,3 +77,10 @@ def test_a_fold_has_a_determinant_below_zero():
     spline = solve(factorise(source), destination)
     assert determinants(jacobians(spline, [[0, 0, 0]]))[0] < 0
     assert determinants(jacobians(spline, [[3, 0, 0]]))[0] == pytest.approx(1, abs=0.2)
+
+
+@pytest.mark.parametrize("scale", [1e-120, 1e120])
+def test_a_derivative_whose_determinant_is_no_number_is_refused(scale):
+    warp = replace(identity(), affine=scale * identity().affine)
+    with pytest.raises(RangeError, match="range of numbers"):
+        jacobians(warp, [[0.0, 0.0, 0.0]])

@@ -59,3 +59,11 @@ def test_swapping_destinations_twice_is_nothing(session):
     assert edits.swap_destinations(once, "c", "a") == session
     with pytest.raises(LandmarkError, match="no landmark called x"):
         edits.swap_destinations(session, "a", "x")
+
+
+def test_of_pairs_at_one_place_that_both_moved_the_first_stays_the_first(session):
+    double = edits.move(session, "b", Side.SOURCE, (0.0, 0.0, 0.0))
+    inputs = WarpInputs.of(double)
+    for name in "ab":
+        double = edits.move(double, name, Side.DESTINATION, (7.0, 7.0, ord(name)))
+    assert pair_names(inputs, double)[0] == "a"

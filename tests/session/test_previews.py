@@ -141,3 +141,14 @@ def test_many_landmarks_put_the_eigenvalues_off_until_the_hand_rests():
     assert not result.factor.has_modes
     assert result.flexibility is None
     assert solver.refine(result).flexibility == 1.0
+
+
+def test_a_landmark_is_followed_from_where_all_others_rest_now(session):
+    solver = WarpSolver()
+    for place in ((0, 0, 0), (1, 1, 1)):
+        solver.solve(WarpInputs.of(session))
+        drag = moved(session, Side.DESTINATION)
+        vertices = solver.preview(WarpInputs.of(drag)).vertices
+        assert np.allclose(vertices, exact(drag), atol=1e-4)
+        # Another one moves before the same one is dragged again.
+        session = edits.move(session, "p5", Side.DESTINATION, place)
