@@ -66,9 +66,9 @@ def test_work_that_cannot_go_back_into_its_folder_is_kept_in_the_journal(
     assert sample_copy.name in title + text
     assert "No such file or directory" in text
     assert saved.editor.is_dirty
-    works = (state_folder / "windows").glob(f"*/{WORK}")
-    saved.qtbot.waitUntil(lambda: any(True for _ in works), timeout=10_000)
-    (work,) = (state_folder / "windows").glob(f"*/{WORK}")
+    windows = state_folder / "windows"
+    saved.qtbot.waitUntil(lambda: any(windows.glob(f"*/{WORK}")), timeout=10_000)
+    (work,) = windows.glob(f"*/{WORK}")
     assert read_work(work).record.landmarks == saved.session.landmarks
 
 
