@@ -26,8 +26,10 @@ class DaskProcesses:
     def start_scheduler(self, *, hiding: Path | None = None) -> subprocess.Popen[bytes]:
         """Start a scheduler on a free port; where a folder hides pinwarp, it has that one."""
         told = self._folder / f"scheduler{len(self._started)}.json"
-        options = ("--port", "0", "--host", "127.0.0.1", "--scheduler-file", told)
-        process = self._start("dask_scheduler", *options, "--dashboard-address", ":0", path=hiding)
+        # Should the tests be killed, the scheduler ends by itself, and with it its workers.
+        options = ("--port", "0", "--host", "127.0.0.1", "--idle-timeout", "600 s")
+        places = ("--scheduler-file", told, "--dashboard-address", ":0")
+        process = self._start("dask_scheduler", *options, *places, path=hiding)
         until = time.monotonic() + STARTS_WITHIN
         while not (told.exists() and told.read_text()):
             assert process.poll() is None
