@@ -25,7 +25,7 @@ class DaskProcesses:
 
     def start_scheduler(self, *, hiding: Path | None = None) -> subprocess.Popen[bytes]:
         """Start a scheduler on a free port; where a folder hides pinwarp, it has that one."""
-        told = self._folder / f"scheduler{len(self._started)}.json"
+        told = self._folder / "scheduler.json"
         # Should the tests be killed, the scheduler ends by itself, and with it its workers.
         options = ("--port", "0", "--host", "127.0.0.1", "--idle-timeout", "600 s")
         places = ("--scheduler-file", told, "--dashboard-address", ":0")
@@ -65,11 +65,13 @@ class DaskProcesses:
 
     def kill(self, process: subprocess.Popen[bytes]) -> None:
         """End a process and those that it started, without a word."""
+        # Once only: the number may be another's afterwards.
+        self._started.remove(process)
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
         process.wait()
 
     def kill_all(self) -> None:
-        """End all that were started."""
-        for process in self._started:
+        """End all that were started and are not killed yet."""
+        for process in list(self._started):
             self.kill(process)

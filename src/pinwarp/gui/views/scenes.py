@@ -24,8 +24,8 @@ class Contributor(Protocol):
 class Scenes(QObject):
     """The scenes of all viewports.
 
-    Contributors are asked, in their own time they only say that something is new: however many
-    of them do so in one turn of the event loop, and however often, one scene is shown.
+    Contributors say that something is new, and are asked for it later: however many say so in one
+    turn of the event loop, and however often, one scene is shown.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Scenes(QObject):
         return not self._is_due
 
     def show_from(self, *contributors: Contributor) -> None:
-        """Show what these have to show from now on; none takes everything away but the last."""
+        """Show what these have to show from now on, and nothing else."""
         self._contributors = contributors
         self._parts.clear()
         self.renew()
