@@ -5,7 +5,8 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Iterable
 
-_MOST_NAMED = 3
+from pinwarp.core.words import NAMED
+
 _LONGEST_NAME = 60
 # Letters by their kind, but nobody sees anything of them.
 _UNSEEN_LETTERS = frozenset("\u034f\u115f\u1160\u17b4\u17b5\u3164\uffa0")
@@ -66,10 +67,10 @@ def look_alike_notes(names: Iterable[str]) -> tuple[str, ...]:
     notes = [
         f"{_told(group[0])} and {_told(group[1])} look alike and are two names: "
         "rename one where they mean the same."
-        for group in groups[:_MOST_NAMED]
+        for group in groups[:NAMED]
     ]
-    if len(groups) > _MOST_NAMED:
-        notes.append(f"{len(groups) - _MOST_NAMED} more names look like another one.")
+    if len(groups) > NAMED:
+        notes.append(f"{len(groups) - NAMED} more names look like another one.")
     return tuple(notes)
 
 

@@ -55,7 +55,6 @@ class MapPanel(QWidget):
 
     def __init__(self, suggest: QAction, next_key: str, accept_key: str) -> None:
         super().__init__()
-        self._suggest = suggest
         self._accept_key = accept_key
         self._shown_range: Range = (0.0, 1.0)
         self.choice = QComboBox()
