@@ -103,6 +103,8 @@ def applied(
     rigid = _affine_of(pose)
     mixed = replace(
         spline,
+        # A refined warp has places beside the landmarks; the fits are of the landmarks.
+        source=whole.source,
         weights=blend * whole.weights,
         affine=blend * whole.affine + (1 - blend) * rigid,
     )

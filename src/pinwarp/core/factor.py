@@ -15,11 +15,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solve_triangular
-from scipy.linalg.lapack import dgeqrf
+from scipy.spatial import KDTree
 from scipy.spatial.distance import cdist
 
 from pinwarp.core.errors import LandmarkCountError
 from pinwarp.core.findings import Finding, FindingKind
+from pinwarp.core.householder import Reflections
 from pinwarp.core.positions import as_positions
 
 Matrix = NDArray[np.float64]
@@ -58,9 +59,7 @@ class SourceFactor:
     directions: Matrix
     findings: tuple[Finding, ...]
     duplicates: tuple[tuple[int, ...], ...]
-    reflectors: Matrix
-    triangle: Matrix
-    upper: Matrix
+    reflections: Reflections
     corner: Matrix
     coupling: Matrix
     bending: Matrix
@@ -146,14 +145,12 @@ class SourceFactor:
         return self.modes[0][self.usable_modes]
 
     def rotate(self, values: Matrix) -> Matrix:
-        """Return ``Q^T values``; Q is never formed (compact WY form)."""
-        V, T = self.reflectors, self.triangle
-        return values - V @ (T.T @ (V.T @ values))
+        """Return ``Q^T values``."""
+        return self.reflections.rotate(values)
 
     def rotate_back(self, values: Matrix) -> Matrix:
         """Return ``Q values``."""
-        V, T = self.reflectors, self.triangle
-        return values - V @ (T @ (V.T @ values))
+        return self.reflections.rotate_back(values)
 
     def flexibility(self, penalty: float) -> float:
         """Return the share of non-affine freedom left: 1 interpolates, 0 is the affine fit.
@@ -238,21 +235,12 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
 
     basis = np.column_stack([np.ones(count), unit @ directions.T])
     # Fewer landmarks than columns cannot happen: n centred landmarks span n - 1 directions.
-    packed, tau, _, _ = dgeqrf(basis)
+    reflections = Reflections.of(basis)
     columns = rank + 1
-    reflectors = np.tril(packed[:, :columns], -1)
-    reflectors[np.arange(columns), np.arange(columns)] = 1.0
-    triangle = np.zeros((columns, columns))
-    for j in range(columns):
-        triangle[j, j] = tau[j]
-        triangle[:j, j] = -tau[j] * triangle[:j, :j] @ (reflectors[:, :j].T @ reflectors[:, j])
-
     distances = cdist(unit, unit)
-    # Q^T (-K) Q = -K + X V^T + V X^T: two thin products instead of two full ones.
-    X = distances @ reflectors @ triangle
-    X -= 0.5 * reflectors @ (triangle.T @ (reflectors.T @ X))
-    projected = np.hstack([X, reflectors]) @ np.hstack([reflectors, X]).T
-    projected -= distances
+    # N and its neighbours are of -K.
+    projected = reflections.conjugate(distances)
+    np.negative(projected, out=projected)
 
     np.fill_diagonal(distances, np.inf)
     findings, duplicates, well_spaced = _spacing(distances, scale)
@@ -265,9 +253,7 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
         directions=directions,
         findings=findings,
         duplicates=duplicates,
-        reflectors=reflectors,
-        triangle=triangle,
-        upper=np.triu(packed[:columns, :columns]),
+        reflections=reflections,
         corner=projected[:columns, :columns].copy(),
         coupling=projected[:columns, columns:].copy(),
         bending=projected[columns:, columns:],
@@ -283,9 +269,7 @@ def _spacing(
     if count < 2:
         return (), (), True
     nearest = distances.min(axis=1)
-    # The largest eigenvalue is at most n times the largest distance (about 6 in these units).
-    same = 8 * count * np.finfo(np.float64).eps * count
-    close = max(CLOSE_TOLERANCE * float(np.median(nearest)), same)
+    same, close = _thresholds(nearest)
     if nearest.min() > close:
         return (), (), True
     duplicates = _clusters(distances <= same)
@@ -298,6 +282,25 @@ def _spacing(
         for rows in _clusters(near)
     )
     return findings, duplicates, False
+
+
+def _thresholds(nearest: Matrix) -> tuple[float, float]:
+    """Return up to which distance landmarks lie at one place, and up to which suspiciously close.
+
+    From the distance of each to the nearest, in units of their RMS radius.
+    """
+    count = len(nearest)
+    # The largest eigenvalue is at most n times the largest distance (about 6 in these units).
+    same = 8 * count * np.finfo(np.float64).eps * count
+    return same, max(CLOSE_TOLERANCE * float(np.median(nearest)), same)
+
+
+def is_well_spaced(unit: Matrix) -> bool:
+    """Whether no two of (n, 3) places lie suspiciously close, in units of their RMS radius."""
+    if len(unit) < 2:
+        return True
+    nearest = np.asarray(KDTree(unit).query(unit, k=2)[0])[:, 1]
+    return bool(nearest.min() > _thresholds(nearest)[1])
 
 
 def _clusters(near: NDArray[np.bool_]) -> tuple[tuple[int, ...], ...]:
@@ -323,11 +326,11 @@ def affine_coordinates(factor: SourceFactor, points: Matrix) -> Matrix:
     """
     spanned = (points - factor.centre) @ (factor.directions.T / factor.scale)
     rows = np.column_stack([np.ones(len(points)), spanned])
-    solved = solve_triangular(factor.upper, rows.T, trans=1, check_finite=False)
+    solved = solve_triangular(factor.reflections.upper, rows.T, trans=1, check_finite=False)
     return np.asarray(solved.T)
 
 
 def solve_upper(factor: SourceFactor, values: Matrix) -> Matrix:
     """Return ``R^-1 values``, the affine part from the top block."""
     # Four by four at most: numpy is done before scipy has looked at its arguments.
-    return np.asarray(np.linalg.solve(factor.upper, values), dtype=np.float64)
+    return np.asarray(np.linalg.solve(factor.reflections.upper, values), dtype=np.float64)

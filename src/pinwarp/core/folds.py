@@ -78,7 +78,9 @@ class Folds:
         return int(np.count_nonzero(self.is_folded))
 
 
-def folds_of(determinant: ArrayLike, mesh: Mesh, spline: Spline) -> Folds:
+def folds_of(
+    determinant: ArrayLike, mesh: Mesh, spline: Spline, landmarks: int | None = None
+) -> Folds:
     """Find the folds of a warp on a mesh.
 
     Parameters
@@ -90,6 +92,9 @@ def folds_of(determinant: ArrayLike, mesh: Mesh, spline: Spline) -> Folds:
         The source, before it is warped. Vertices without a triangle have no surface to fold.
     spline
         The warp.
+    landmarks
+        How many of its places are landmarks, its first ones; without it all. What a refinement
+        fitted to the surface cannot be moved, and is not held responsible.
 
     Returns
     -------
@@ -118,7 +123,9 @@ def folds_of(determinant: ArrayLike, mesh: Mesh, spline: Spline) -> Folds:
     mirrors = bool(np.linalg.det(spline.affine[1:]) < 0)
     is_folded = ((values >= 0) if mirrors else (values <= 0)) & mesh.on_surface
     patches = tuple(
-        FoldPatch(vertices, _responsible(spline, mesh.vertices[_judged(vertices)], mirrors))
+        FoldPatch(
+            vertices, _responsible(spline, mesh.vertices[_judged(vertices)], mirrors, landmarks)
+        )
         for vertices in _connected(is_folded, mesh)
     )
     return Folds(is_folded, patches, mirrors)
@@ -144,9 +151,11 @@ def _judged(vertices: Rows) -> Rows:
     return vertices[:: -(-len(vertices) // JUDGED)]
 
 
-def _responsible(spline: Spline, places: Matrix, mirrors: bool) -> tuple[int, ...]:
+def _responsible(
+    spline: Spline, places: Matrix, mirrors: bool, landmarks: int | None
+) -> tuple[int, ...]:
     """Return the landmarks that take most of the volume at some places, the worst first."""
-    losses = _losses(spline, places) * (-1 if mirrors else 1)
+    losses = (_losses(spline, places) * (-1 if mirrors else 1))[:landmarks]
     order = np.argsort(-losses, kind="stable")[:AT_MOST]
     taken = np.maximum(losses, 0.0)
     # One more than are needed to reach it; none where the affine part alone flattens everything.

@@ -56,6 +56,11 @@ class WarpSettings:
         return self.components is Components.FULL and self.blend == 1
 
     @property
+    def whole(self) -> WarpSettings:
+        """The same with all of the warp applied: what it is solved by, and nothing else."""
+        return replace(self, components=Components.FULL, blend=1.0)
+
+    @property
     def is_regular(self) -> bool:
         """Whether the figures of the regularising convention hold: at no penalty both are one."""
         return self.convention is PenaltyConvention.REGULARISING or self.penalty == 0

@@ -307,7 +307,9 @@ def _bend(
     regularising = convention is PenaltyConvention.REGULARISING or penalty == 0
     if regularising and factor.well_spaced and not factor.has_modes:
         # One solve alone: Cholesky is a tenth of the eigendecomposition's work.
-        solved = _cholesky_solve(factor.bending, penalty / factor.scale, values)
+        shifted = factor.bending.copy()
+        shifted.flat[:: len(shifted) + 1] += penalty / factor.scale
+        solved = cholesky_solve(shifted, values)
         if solved is not None:
             return solved, ()
     eigenvalues, vectors = factor.modes
@@ -320,17 +322,23 @@ def _bend(
     return vectors @ (inverse[:, None] * (vectors.T @ values)), findings
 
 
-def _cholesky_solve(matrix: Matrix, shift: float, values: Matrix) -> Matrix | None:
-    """Solve ``(matrix + shift I) x = values``; None where clustered landmarks defeat it."""
-    shifted = matrix.copy()
-    shifted.flat[:: len(shifted) + 1] += shift
+def cholesky_solve(matrix: Matrix, values: Matrix) -> Matrix | None:
+    """Solve ``matrix x = values``; None where the matrix is not positive definite.
+
+    Parameters
+    ----------
+    matrix
+        (n, n), symmetric; overwritten.
+    values
+        (n, k).
+    """
     in_worker = threading.current_thread() is not threading.main_thread()
-    if len(shifted) <= HOLDS_UP_LITTLE or not in_worker:
+    if len(matrix) <= HOLDS_UP_LITTLE or not in_worker:
         # Symmetric: the transpose is the same matrix in the order that LAPACK wants.
-        _, solved, info = dposv(shifted.T, values, lower=1, overwrite_a=1)
+        _, solved, info = dposv(matrix.T, values, lower=1, overwrite_a=1)
         return np.asarray(solved) if info == 0 else None
     try:
-        lower = np.linalg.cholesky(shifted)
+        lower = np.linalg.cholesky(matrix)
     except np.linalg.LinAlgError:
         return None
     half = solve_triangular(lower, values, lower=True, check_finite=False)
