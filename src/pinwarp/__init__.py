@@ -5,7 +5,8 @@ only with meshes that need it, Qt never.
 
 Sessions
     :class:`Session`, :class:`WarpSettings`, :func:`read_session`, :func:`write_session`,
-    :func:`warped_mesh`, :func:`warped_passengers`, :func:`check`, :class:`Check`
+    :func:`warped_mesh`, :func:`warped_passengers`, :func:`check`, :class:`Check`,
+    :func:`refined_session`, :class:`RefinementOptions`
 Landmarks and meshes
     :class:`Landmark`, :class:`Side`, :class:`Role`, :func:`read_landmarks`,
     :func:`write_landmarks`, :class:`Mesh`, :class:`MeshFile`, :func:`read_mesh`,
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
     from pinwarp.session.keeping.files import read_session, write_session
     from pinwarp.session.outputs.exports import warped_mesh, warped_passengers
     from pinwarp.session.session import Session
+    from pinwarp.session.warp.refining import RefinementOptions, refined_session
     from pinwarp.tps3d import PenaltyConvention, TPSCoefficients3D, solve_coefficients
 
 from pinwarp.version import __version__
@@ -57,6 +59,7 @@ __all__ = [
     "PenaltyConvention",
     "PinwarpError",
     "PinwarpWarning",
+    "RefinementOptions",
     "Role",
     "Session",
     "Side",
@@ -71,6 +74,7 @@ __all__ = [
     "read_landmarks",
     "read_mesh",
     "read_session",
+    "refined_session",
     "solve_coefficients",
     "warped_mesh",
     "warped_passengers",
@@ -94,6 +98,7 @@ _HOMES = {
     "session.outputs.exports": ("warped_mesh", "warped_passengers"),
     "session.keeping.files": ("read_session", "write_session"),
     "session.session": ("Session",),
+    "session.warp.refining": ("RefinementOptions", "refined_session"),
     "tps3d": ("PenaltyConvention", "TPSCoefficients3D", "solve_coefficients"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}

@@ -29,6 +29,7 @@ KEYS = {
     "suggested_penalty": (float, type(None)),
     "folded_vertices": int,
     "distance": dict,
+    "fitted": (int, type(None)),
     "findings": list,
     "notes": list,
     "pairs": list,

@@ -214,6 +214,17 @@ class Driver:
             QTest.mouseRelease(widget, button, Qt.KeyboardModifier.NoModifier, end)
         self.settle()
 
+    def drag_a_landmark(self, release: bool = True) -> None:
+        """Drag the first landmark of the destination that can be seen and moved."""
+        there = self.window.viewports[Side.DESTINATION]
+        marker = next(
+            m
+            for m, hidden in zip(there.layer.markers, there.layer.hidden(), strict=True)
+            if not hidden and m.movable
+        )
+        start = self.place_of(Side.DESTINATION, marker.position)
+        self.drag(there, start, start + QPoint(0, 25), release=release)
+
     @staticmethod
     def move_with(widget, at: QPointF, button, modifiers=Qt.KeyboardModifier.NoModifier) -> None:
         """Move the mouse with a button held (QTest.mouseMove forgets the buttons)."""

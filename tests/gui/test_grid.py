@@ -8,7 +8,6 @@ from qtpy.QtCore import QPoint, Qt
 from tests.gui.test_warp_panel import (
     DESTINATION,
     SOURCE,
-    drag_a_landmark,
     show_panel,
     slide,
     warp_of,
@@ -95,7 +94,7 @@ def test_the_grid_follows_a_landmark_while_it_is_dragged(user):
     user.open_sample()
     user.trigger("grid_box")
     before = grid(user, DESTINATION)
-    drag_a_landmark(user, release=False)
+    user.drag_a_landmark(release=False)
     assert user.editor.is_previewing
     during = grid(user, DESTINATION)
     assert not np.allclose(during, before, atol=0.1)

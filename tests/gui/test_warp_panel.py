@@ -319,20 +319,9 @@ def test_the_figures_are_those_of_the_affine_fit_and_follow_a_drag(user, panel):
     assert agree()
     assert f"{expected().angle:.2f}°" in panel.figures.text()
     before = figures_of(panel)
-    drag_a_landmark(user)
+    user.drag_a_landmark()
     assert figures_of(panel) != before
     assert agree()
-
-
-def drag_a_landmark(user, release=True):
-    there = user.window.viewports[DESTINATION]
-    marker = next(
-        m
-        for m, hidden in zip(there.layer.markers, there.layer.hidden(), strict=True)
-        if not hidden and m.movable
-    )
-    start = user.place_of(DESTINATION, marker.position)
-    user.drag(there, start, start + QPoint(0, 25), release=release)
 
 
 def test_the_figures_are_copied_as_a_table_and_no_landmark_with_them(user, panel):

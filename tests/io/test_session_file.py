@@ -3,6 +3,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 from random import Random
@@ -22,6 +23,7 @@ from pinwarp.core.errors import (
 from pinwarp.core.landmarks import Landmark, Role
 from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import PenaltyConvention
+from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.io.session_file import MeshReference, SessionRecord, read_session, write_session
 
 from . import strategies
@@ -313,8 +315,8 @@ def test_a_damaged_session_is_refused_with_its_line(
 
 
 def test_a_newer_session_is_refused_by_its_version_only(tmp_path: Path) -> None:
-    path = save(tmp_path, "# pinwarp-session: 2\nwhatever\nthis is\n")
-    with pytest.raises(NewerFileError, match=r"newer pinwarp \(version 2\); update pinwarp"):
+    path = save(tmp_path, "# pinwarp-session: 3\nwhatever\nthis is\n")
+    with pytest.raises(NewerFileError, match=r"newer pinwarp \(version 3\); update pinwarp"):
         read_session(path)
 
 
@@ -418,4 +420,56 @@ def test_an_empty_lock_is_open_and_nonsense_is_refused(tmp_path: Path) -> None:
     assert not read_session(path).landmarks[0].locked
     path.write_text(text.replace(",,1\n", ",,maybe\n"))
     with pytest.raises(FileFormatError, match="'locked' is 'maybe' and not 1 or 0"):
+        read_session(path)
+
+
+PLACES = ((0.1, 2.0, 3.0), (4.0, 5e-17, 6.0), (7.0, 8.0, 1 / 3))
+REFINED = RefinementRecord(PLACES, PLACES[::-1], 6.5, 0.25, True, 9, 2, "sha256:ab12")
+
+
+def test_a_refined_session_is_version_2_and_reads_back_to_the_last_bit(tmp_path: Path) -> None:
+    record = replace(example(tmp_path), refinement=REFINED)
+    locked = (replace(record.landmarks[0], locked=True), *record.landmarks[1:])
+    for one in (record, replace(record, landmarks=locked), SessionRecord(refinement=REFINED)):
+        path = tmp_path / "a.pinwarp.csv"
+        write_session(path, one)
+        assert path.read_text().startswith("# pinwarp-session: 2\n")
+        assert read_session(path) == one
+
+
+def test_without_a_refinement_older_versions_can_read_the_session(tmp_path: Path) -> None:
+    path = tmp_path / "a.pinwarp.csv"
+    write_session(path, example(tmp_path))
+    assert path.read_text().startswith("# pinwarp-session: 1\n")
+
+
+def test_a_landmark_may_be_called_as_a_fitted_place_is(tmp_path: Path) -> None:
+    path = tmp_path / "a.pinwarp.csv"
+    record = SessionRecord((Landmark("fitted_1", (1, 2, 3)),), refinement=REFINED)
+    write_session(path, record)
+    assert read_session(path) == record
+
+
+@pytest.mark.parametrize(
+    ("found", "put", "words"),
+    [
+        (r"# refine: .*\n", "", "the line '# refine: ...' is missing"),
+        (r"fitted_[123],.*\n", "", "what it fitted is missing"),
+        (r"feature=6.5", "feature=-1", "a length below 0"),
+        (r"tolerance=0.25 ", "", "does not say its tolerance"),
+        (r"turned=1", "turned=perhaps", "not 0 or 1"),
+        (r"places=9", "places=nine", "no number"),
+        (r"(fitted_2,fitted,1,[^,]*),", r"\1x,", "fitted_2|is not a number|no number"),
+        (r"(fitted_2,fitted,1),[^,]*,[^,]*,[^,]*,", r"\1,,,,", "lacks one of its positions"),
+    ],
+)
+def test_a_damaged_refinement_is_refused_not_half_read(
+    tmp_path: Path, found: str, put: str, words: str
+) -> None:
+    path = tmp_path / "a.pinwarp.csv"
+    write_session(path, replace(example(tmp_path), refinement=REFINED))
+    text, times = re.subn(found, put, path.read_text())
+    assert times
+    path.write_text(text)
+    with pytest.raises(FileFormatError, match=words):
         read_session(path)

@@ -13,6 +13,7 @@ from typing import Annotated
 import typer
 
 from pinwarp.cli.options import Applied, Blend, Penalty, with_options
+from pinwarp.cli.refine import Feature, Tolerance, Turn
 from pinwarp.cli.telling import INTERRUPTED, progress_bar, tell_error, tell_notes
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Landmark, Role, Side
@@ -28,6 +29,7 @@ from pinwarp.session.study.cluster import runner_of
 from pinwarp.session.study.scheduler import address_of
 from pinwarp.session.study.subject import Task
 from pinwarp.session.study.workers import cores
+from pinwarp.session.warp.refining import RefinementOptions
 
 FAILED = 1
 CLUSTER_LOST = 3
@@ -81,6 +83,13 @@ def batch(
             show_default=False,
         ),
     ] = None,
+    refine: Annotated[
+        bool,
+        typer.Option("--refine", help="Refine each warp to the surface of the subject's mesh."),
+    ] = False,
+    feature: Feature = None,
+    tolerance: Tolerance = None,
+    turn: Turn = False,
     jobs: Annotated[
         int | None,
         typer.Option(min=1, help="Processes at once; without it one for each core."),
@@ -118,6 +127,7 @@ def batch(
         out.absolute(),
         suffix=None if suffix is None else f".{suffix.lower().removeprefix('.')}",
         inputs=given,
+        refinement=_refinement(refine, feature, tolerance, turn),
     )
     if subjects.unused:
         tell_notes([f"{manifest.name}: not used: {', '.join(subjects.unused)}."])
@@ -146,6 +156,15 @@ def batch(
         raise typer.Exit(CLUSTER_LOST if tally.ended else INTERRUPTED)
     if tally.failed:
         raise typer.Exit(FAILED)
+
+
+def _refinement(
+    wanted: bool, feature: float | None, tolerance: float | None, turn: bool
+) -> RefinementOptions | None:
+    options = RefinementOptions(feature, tolerance, turn)
+    if not wanted and options != RefinementOptions():
+        raise PinwarpError("--feature, --tolerance and --turn are about refining: add --refine.")
+    return options if wanted else None
 
 
 def _source(

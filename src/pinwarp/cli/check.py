@@ -21,6 +21,7 @@ from pinwarp.session.warp.setting_words import settings_in_words
 from pinwarp.version import __version__
 
 FLAGGED = 1
+FITTED = "{:,} places: a small distance then proves nothing; figures of pairs are the landmarks'"
 
 
 def check(
@@ -106,10 +107,12 @@ def _figures(session: Session, checked: checking.Check) -> list[tuple[str, str]]
     if (far := checked.distance) is not None:
         figures.append(
             (
-                "To the destination",
+                "To the destination" if checked.fitted is None else "To it (fitted)",
                 f"mean {far.mean:.4g}, 95% {far.percentile_95:.4g}, max {far.maximum:.4g} {unit}",
             )
         )
+    if checked.fitted is not None:
+        figures.append(("Fitted to the surface", FITTED.format(checked.fitted)))
     return figures
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import contextlib
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
 import typer
@@ -38,6 +39,18 @@ def progress_bar() -> Progress:
         transient=True,
         disable=not console.is_terminal,
     )
+
+
+@contextlib.contextmanager
+def stage_bar() -> Iterator[Callable[[float, str], None]]:
+    """Show one piece of work by its share and stage, and give what is called with them."""
+    with progress_bar() as progress:
+        bar = progress.add_task("", total=1.0)
+
+        def told(share: float, words: str) -> None:
+            progress.update(bar, completed=share, description=words.capitalize())
+
+        yield told
 
 
 def refuse_existing(outputs: Sequence[Path], force: bool) -> None:

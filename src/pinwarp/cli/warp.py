@@ -13,7 +13,7 @@ from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.session.keeping.files import read_session, with_meshes
 from pinwarp.session.outputs.warp_files import FileWarper, outputs_of, warp_each
-from pinwarp.session.warp.component_words import applied_in_words
+from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date, warp_in_words
 
 
 def warp(
@@ -56,6 +56,8 @@ def warp(
         tell_notes([f"The session mirrors its source ({axes}): so are the inputs."])
     if opened.source is not None and (factor := opened.source.scaled) != 1:
         tell_notes([f"The session scales its source by {factor:g}: so are the inputs."])
+    if is_out_of_date(opened):
+        tell_notes([OUT_OF_DATE])
     warper = FileWarper(opened)
     failed = 0
     with progress_bar() as progress:
@@ -67,7 +69,7 @@ def warp(
                 failed += 1
                 continue
             tell_notes(file.notes, file.source.name)
-            applied = applied_in_words(opened.settings)
+            applied = warp_in_words(opened)
             typer.echo(f"{file.output}: {applied}, {len(opened.pairs)} pairs")
     if failed:
         raise typer.Exit(BAD_USAGE)

@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pinwarp.core.errors import LandmarkError
+from pinwarp.core.errors import FileFormatError, LandmarkError
 from pinwarp.core.landmarks import Landmark, duplicate_names
 from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
 from pinwarp.io.atomic import write_atomically
 from pinwarp.io.csv_cells import shortened
 from pinwarp.io.csv_text import LONGEST_CELL, lines_of, read_text
 from pinwarp.io.mesh_reference import MeshReference, mesh_text
-from pinwarp.io.session_header import VERSION, header_line, is_header, read_header, read_values
-from pinwarp.io.session_table import read_table, table_lines
+from pinwarp.io.refinement_record import RefinementRecord, refinement_text
+from pinwarp.io.session_header import (
+    CORRECT,
+    PLAIN,
+    VERSION,
+    header_line,
+    is_header,
+    read_header,
+    read_values,
+)
+from pinwarp.io.session_table import Pair, read_table, table_lines
 from pinwarp.io.setting_keys import setting_lines
 
 __all__ = ["MeshReference", "SessionRecord", "read_session", "write_session"]
@@ -32,6 +41,8 @@ class SessionRecord:
         The meshes, or None where none was chosen yet.
     settings
         How the warp is solved and applied.
+    refinement
+        A refined warp, or None; it makes the file one of version 2.
     unit
         The unit of length, for display.
     unknown
@@ -43,6 +54,7 @@ class SessionRecord:
     source_mesh: MeshReference | None = None
     destination_mesh: MeshReference | None = None
     settings: WarpSettings = USUAL_SETTINGS
+    refinement: RefinementRecord | None = None
     unit: str = "mm"
     unknown: tuple[tuple[str, str], ...] = ()
 
@@ -86,7 +98,8 @@ def write_session(path: str | Path, record: SessionRecord, *, relative_meshes: b
                 f"Shorten it to {LONGEST_CELL:,} characters."
             )
     folder = Path(os.path.abspath(path)).parent if relative_meshes else None
-    header = [("pinwarp-session", str(VERSION))]
+    refined = record.refinement
+    header = [("pinwarp-session", str(PLAIN if refined is None else VERSION))]
     for key, mesh in (
         ("source_mesh", record.source_mesh),
         ("destination_mesh", record.destination_mesh),
@@ -100,11 +113,15 @@ def write_session(path: str | Path, record: SessionRecord, *, relative_meshes: b
     header += setting_lines(record.settings, always=True)
     header.append(("unit", record.unit))
     header += setting_lines(record.settings, always=False)
+    fitted: list[Pair] = []
+    if refined is not None:
+        header.append(("refine", refinement_text(refined)))
+        fitted = list(zip(refined.source, refined.destination, strict=True))
     # Every header entry stays on its line, whatever it says.
     entries = [" ".join(f"# {key}: {text}".splitlines()).rstrip() for key, text in header]
     entries += [f"# {key}: {text}" if key else f"# {text}" for key, text in record.unknown]
     lines = [header_line(entry) for entry in entries]
-    lines += table_lines(record.landmarks)
+    lines += table_lines(record.landmarks, fitted)
     write_atomically(path, "".join(lines))
 
 
@@ -141,5 +158,12 @@ def read_session(path: str | Path) -> SessionRecord:
     top = next((n for n, line in enumerate(lines) if not is_header(line)), len(lines))
     separator = max(",;\t", key=lines[top].count) if top < len(lines) else ","
     known, unknown = read_values(path, read_header(path, lines[:top], separator))
-    landmarks = read_table(path, lines[top:], top + 1, separator)
-    return SessionRecord(landmarks=landmarks, unknown=unknown, **known)
+    landmarks, fitted = read_table(path, lines[top:], top + 1, separator)
+    refinement = known.pop("refinement", None)
+    if (refinement is None) != (not fitted):
+        lost = "the line '# refine: ...' is" if refinement is None else "what it fitted is"
+        raise FileFormatError(path, f"The session was refined, but {lost} missing. {CORRECT}")
+    if refinement is not None:
+        source, destination = zip(*fitted, strict=True)
+        refinement = replace(refinement, source=source, destination=destination)
+    return SessionRecord(landmarks=landmarks, refinement=refinement, unknown=unknown, **known)

@@ -16,9 +16,13 @@ from pinwarp.core.settings import WarpSettings
 from pinwarp.io.csv_cells import as_sentence, number_of, shortened
 from pinwarp.io.csv_text import plain_line
 from pinwarp.io.mesh_reference import MeshReference, mesh_reference
+from pinwarp.io.refinement_record import RefinementRecord, refinement_of
 from pinwarp.io.setting_keys import SETTING_KEYS
 
-VERSION = 1
+VERSION = 2
+"""The newest version of the format that is known."""
+PLAIN = 1
+"""The version of a session without a refinement, which older ones can read."""
 CORRECT = "Correct it in a text editor, or use an earlier copy of the file."
 
 _FIELDS = {
@@ -29,6 +33,7 @@ _FIELDS = {
     "source_scaled": "source_scaled",
     "destination_scaled": "destination_scaled",
     "unit": "unit",
+    "refine": "refinement",
 }
 """The field of a session record, or of one of its meshes, that each known key fills."""
 
@@ -207,7 +212,7 @@ def read_values(
     return known, tuple(unknown)
 
 
-def _value(key: str, text: str, folder: Path) -> MeshReference | float | str:
+def _value(key: str, text: str, folder: Path) -> MeshReference | RefinementRecord | float | str:
     """Read the text of one line, or raise a ValueError with the reason."""
     match key:
         case "source_mesh" | "destination_mesh":
@@ -216,6 +221,8 @@ def _value(key: str, text: str, folder: Path) -> MeshReference | float | str:
             return _axes(key, text)
         case "source_scaled" | "destination_scaled":
             return _factor(key, text)
+        case "refine":
+            return refinement_of(text)
         case _:
             return text
 

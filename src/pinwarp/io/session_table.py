@@ -1,4 +1,4 @@
-"""The table of a session file: one row per landmark."""
+"""The table of a session file: one row per landmark, and below them one per fitted place."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError
-from pinwarp.core.landmarks import Landmark, Role
+from pinwarp.core.landmarks import Landmark, Position, Role
 from pinwarp.io.csv_cells import (
     YES_NO,
     as_sentence,
@@ -24,10 +24,14 @@ _COLUMNS = ("name", "role", "enabled", *_SOURCE, *_DESTINATION, "note")
 # Only there where some landmark is locked.
 _LOCKED = "locked"
 _KNOWN = (*_COLUMNS, _LOCKED)
+# The role of rows that are no landmarks: where a refinement found the surface.
+_FITTED = "fitted"
+
+Pair = tuple[Position, Position]
 
 
-def table_lines(landmarks: Iterable[Landmark]) -> list[str]:
-    r"""Return the line of column names and a line per landmark.
+def table_lines(landmarks: Iterable[Landmark], fitted: Iterable[Pair] = ()) -> list[str]:
+    r"""Return the line of column names, a line per landmark, and one per fitted place.
 
     Examples
     --------
@@ -53,13 +57,17 @@ def table_lines(landmarks: Iterable[Landmark]) -> list[str]:
             *[others.get(column, "") for column in extra],
         ]
         lines.append(csv_line(cells))
+    empty = [""] * len([*locks, *extra])
+    for number, (source, destination) in enumerate(fitted, 1):
+        places = (*coordinates_text(source), *coordinates_text(destination))
+        lines.append(csv_line([f"{_FITTED}_{number}", _FITTED, "1", *places, "", *empty]))
     return lines
 
 
 def read_table(
     path: str | Path, lines: Sequence[str], first_line: int, separator: str
-) -> tuple[Landmark, ...]:
-    """Read the column names and the landmarks below them.
+) -> tuple[tuple[Landmark, ...], tuple[Pair, ...]]:
+    """Read the column names, and the landmarks and fitted places below them.
 
     Parameters
     ----------
@@ -80,7 +88,7 @@ def read_table(
     Examples
     --------
     >>> lines = table_lines([Landmark("fovea", note="=1+1")])
-    >>> read_table("femur.pinwarp.csv", lines, 1, ",")[0].note
+    >>> read_table("femur.pinwarp.csv", lines, 1, ",")[0][0].note
     '=1+1'
     """
     rows = list(rows_of(lines, separator, first_line))
@@ -90,18 +98,23 @@ def read_table(
         )
     columns = _read_columns(path, rows[0])
     landmarks: dict[str, Landmark] = {}
+    fitted: list[Pair] = []
     for row in rows[1:]:
         if row.is_blank:
             continue
         is_cut_off = row is rows[-1] and not lines[-1].endswith(("\n", "\r"))
         try:
-            landmark = _landmark(row, columns, separator, is_cut_off)
+            values = _values(row, columns, is_cut_off)
+            if values["role"].strip().lower() == _FITTED:
+                fitted.append(_fitted(values, separator))
+                continue
+            landmark = _landmark(values, columns, separator)
             if landmark.name in landmarks:
                 raise ValueError(f"The name {shortened(landmark.name)} was used before.")
         except ValueError as error:
             raise FileFormatError(path, f"{as_sentence(str(error))} {CORRECT}", row.line) from None
         landmarks[landmark.name] = landmark
-    return tuple(landmarks.values())
+    return tuple(landmarks.values()), tuple(fitted)
 
 
 def _read_columns(path: str | Path, row: Row) -> tuple[str, ...]:
@@ -118,8 +131,8 @@ def _read_columns(path: str | Path, row: Row) -> tuple[str, ...]:
     return columns
 
 
-def _landmark(row: Row, columns: Sequence[str], separator: str, is_cut_off: bool) -> Landmark:
-    """Make a landmark of one row, or raise a ValueError with the reason."""
+def _values(row: Row, columns: Sequence[str], is_cut_off: bool) -> dict[str, str]:
+    """Return the cells of one row by column, or raise a ValueError with the reason."""
     if row.problem:
         raise ValueError(row.problem)
     cells = row.cells
@@ -132,6 +145,20 @@ def _landmark(row: Row, columns: Sequence[str], separator: str, is_cut_off: bool
     values = dict(zip(columns, cells, strict=False))
     if values.get("", "").strip():
         raise ValueError("a cell is filled in a column without a name")
+    return values
+
+
+def _fitted(values: dict[str, str], separator: str) -> Pair:
+    """Make a fitted place of one row, or raise a ValueError with the reason."""
+    source = position_of([values[column] for column in _SOURCE], separator)
+    destination = position_of([values[column] for column in _DESTINATION], separator)
+    if source is None or destination is None:
+        raise ValueError("a fitted place lacks one of its positions")
+    return source, destination
+
+
+def _landmark(values: dict[str, str], columns: Sequence[str], separator: str) -> Landmark:
+    """Make a landmark of one row, or raise a ValueError with the reason."""
     role = values["role"].strip().lower()
     if role not in {known.value for known in Role}:
         raise ValueError(f"the role {shortened(role)} is neither 'pair' nor 'passenger'")

@@ -23,6 +23,7 @@ NUMBERS = (
     "distance_mean",
     "distance_95",
     "distance_max",
+    "fitted",
 )
 COLUMNS = ("name", "status", *NUMBERS, "findings", "notes", "error", "seconds", "made_from")
 

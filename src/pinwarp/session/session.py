@@ -9,6 +9,7 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.core.mirror import mirrored_mesh
 from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
 from pinwarp.io.meshes import MeshFile
+from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.io.session_file import MeshReference, SessionRecord
 
 
@@ -25,6 +26,9 @@ class Session:
         In the order of the table; names are unique.
     settings
         How the warp is solved and applied.
+    refinement
+        The warp refined to the whole surface, where somebody asked for that. It counts only while
+        what it was made from is unchanged; see :mod:`pinwarp.session.warp.refined`.
     unit
         The unit of the meshes, for display.
     unknown
@@ -42,6 +46,7 @@ class Session:
     destination: MeshFile | MeshReference | None = None
     landmarks: tuple[Landmark, ...] = ()
     settings: WarpSettings = USUAL_SETTINGS
+    refinement: RefinementRecord | None = None
     unit: str = "mm"
     unknown: tuple[tuple[str, str], ...] = ()
 
@@ -94,6 +99,7 @@ def to_record(session: Session) -> SessionRecord:
         source_mesh=_reference(session.source),
         destination_mesh=_reference(session.destination),
         settings=session.settings,
+        refinement=session.refinement,
         unit=session.unit,
         unknown=session.unknown,
     )
@@ -110,6 +116,7 @@ def from_record(
         destination=_found(destination, record.destination_mesh),
         landmarks=record.landmarks,
         settings=record.settings,
+        refinement=record.refinement,
         unit=record.unit,
         unknown=record.unknown,
     )

@@ -26,7 +26,7 @@ from pinwarp.session.outputs.exports import (
 )
 from pinwarp.session.outputs.script import script_of
 from pinwarp.session.session import Session
-from pinwarp.session.warp.component_words import applied_in_words
+from pinwarp.session.warp.refined import warp_in_words
 from pinwarp.session.warp.solved import solved
 
 
@@ -141,7 +141,7 @@ class Exports(Capability):
         if path is None:
             return
         carried = warped_passengers if passengers else warped_landmarks
-        applied = applied_in_words(session.settings)
+        applied = warp_in_words(session)
         self._write(path, lambda: carried(session), Side.DESTINATION, applied)
 
     def _write(
@@ -195,7 +195,7 @@ class Exports(Capability):
     def _say_exported(self, path: Path, session: Session) -> None:
         pairs = len(session.pairs)
         penalty = f"penalty {format_length(session.settings.penalty, session.unit, 6)}"
-        what = applied_in_words(session.settings)
+        what = warp_in_words(session)
         self._tasks.said.emit(f"Exported {path.name}: {what} ({pairs} pairs, {penalty})")
 
     def ask_and_export_mesh(self) -> None:

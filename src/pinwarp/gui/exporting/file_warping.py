@@ -15,7 +15,7 @@ from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
 from pinwarp.io.meshes import MESH_SUFFIXES
 from pinwarp.session.editor import Editor
 from pinwarp.session.outputs.warp_files import FileWarper, WarpedFile, outputs_of, warp_each
-from pinwarp.session.warp.component_words import applied_in_words
+from pinwarp.session.warp.refined import warp_in_words
 
 FILES = "Meshes and landmarks ({});;All files (*)".format(
     " ".join(f"*{suffix}" for suffix in (*MESH_SUFFIXES, *LANDMARK_SUFFIXES))
@@ -96,7 +96,7 @@ class FileWarping(Capability):
             return done
 
         def arrived(done: list[WarpedFile]) -> None:
-            self._sum_up(done, len(pairs), folder, applied_in_words(session.settings))
+            self._sum_up(done, len(pairs), folder, warp_in_words(session))
 
         self._tasks.run("Warping files", warp, arrived)
 

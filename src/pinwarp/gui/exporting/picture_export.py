@@ -20,7 +20,7 @@ from pinwarp.gui.views.canvas import Canvas
 from pinwarp.io.animation import Frame, write_gif
 from pinwarp.io.atomic import atomic_path
 from pinwarp.session.editor import Editor
-from pinwarp.session.warp.component_words import applied_in_words
+from pinwarp.session.warp.refined import warp_in_words
 
 
 class PictureExport(Capability):
@@ -118,7 +118,7 @@ class PictureExport(Capability):
         session = self._editor.committed
         what = self._shown((Side.DESTINATION,))
         if order.motion is Motion.BLEND:
-            what = f", to {applied_in_words(session.settings)}"
+            what = f", to {warp_in_words(session)}"
 
         def rendered(frames: list[Frame]) -> None:
             def write(progress: Progress) -> None:
@@ -154,7 +154,7 @@ class PictureExport(Capability):
         """Say which part of the warp can be seen, where it can."""
         session = self._editor.committed
         seen = Side.DESTINATION in sides and self._editor.view.overlay and bool(session.pairs)
-        return f", {applied_in_words(session.settings)}" if seen else ""
+        return f", {warp_in_words(session)}" if seen else ""
 
 
 def _write_png(path: Path, image: QImage) -> None:

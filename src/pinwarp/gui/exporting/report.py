@@ -18,7 +18,7 @@ from pinwarp.io.report import Picture, write_figures, write_report
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.quality import Quality
 from pinwarp.session.judging.report import report_of
-from pinwarp.session.warp.component_words import applied_in_words
+from pinwarp.session.warp.refined import warp_in_words
 from pinwarp.session.warp.solved import solved
 from pinwarp.session.warp.solver import WarpResult
 
@@ -98,7 +98,7 @@ class ReportExport(Capability):
         self._tasks.run(f"Exporting {path.name}", write, arrived)
 
     def _pictures(self) -> list[Picture]:
-        applied = applied_in_words(self._editor.committed.settings)
+        applied = warp_in_words(self._editor.committed)
         captions = {
             Side.SOURCE: "Source",
             Side.DESTINATION: f"Destination, with {applied} of the source",

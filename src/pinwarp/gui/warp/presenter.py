@@ -19,6 +19,7 @@ from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.warp_figures import figures_table
 from pinwarp.session.warp.component_words import applied_in_words
+from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date, refinement_in_words
 
 COMPONENT_ACTIONS = {part: f"apply_{part.name.lower()}" for part in Components}
 _ACTIONS = {
@@ -59,7 +60,8 @@ class WarpPresenter(Capability):
         self._quality = quality
         self._say = say
         self.note = QLabel()
-        self.notes = (self.note,)
+        self.refinement_note = QLabel()
+        self.notes = (self.refinement_note, self.note)
         self.player = BlendPlayer(editor, parent)
         self._play_action = Action(
             "play_blend",
@@ -121,6 +123,9 @@ class WarpPresenter(Capability):
         else:
             applied = applied_in_words(session.settings)
             self.note.setText("" if whole else f"Shown and exported: {applied}")
+        # What was fitted is no landmark: neither the table nor the markers tell of it.
+        self.refinement_note.setText(refinement_in_words(session))
+        self.refinement_note.setToolTip(OUT_OF_DATE if is_out_of_date(session) else "")
 
     def _on_view(self, _changed: object = None) -> None:
         self.panel.show_view(self._editor.view)

@@ -15,6 +15,7 @@ from pinwarp.core.surface_distance import DistanceFigures
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session.judging.quality import NamedFinding, named_findings, quality_of
 from pinwarp.session.session import Session
+from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date
 from pinwarp.session.warp.solved import SolvedWarp, solved
 
 
@@ -58,6 +59,9 @@ class Check:
         How many vertices of the source mesh lie where the warp folds.
     distance
         Of the warped source from the surface of the destination.
+    fitted
+        How many places were fitted to that surface, so that the distance proves nothing; None
+        where none were.
     findings
         What was noticed, the gravest first; what is wrong is flagged.
     notes
@@ -79,6 +83,7 @@ class Check:
     suggested_penalty: float | None
     folded_vertices: int | None
     distance: DistanceFigures | None
+    fitted: int | None
     findings: tuple[NamedFinding, ...]
     notes: tuple[str, ...] = ()
 
@@ -97,6 +102,7 @@ class Check:
             "suggested_penalty": self.suggested_penalty,
             "folded_vertices": self.folded_vertices,
             "distance": None if self.distance is None else asdict(self.distance),
+            "fitted": self.fitted,
             "findings": [
                 {
                     "kind": named.finding.kind.value,
@@ -169,9 +175,18 @@ def check(session: Session | SolvedWarp) -> Check:
         distance=None
         if distances is None
         else DistanceFigures.of(distances[warp.source.on_surface]),
+        fitted=warp.fitted,
         findings=gravest_first(findings),
-        notes=(*_about_files(session), *look_alike_notes(x.name for x in session.landmarks)),
+        notes=(
+            *_about_refinement(session),
+            *_about_files(session),
+            *look_alike_notes(x.name for x in session.landmarks),
+        ),
     )
+
+
+def _about_refinement(session: Session) -> tuple[str, ...]:
+    return (OUT_OF_DATE,) if is_out_of_date(session) else ()
 
 
 def _about_files(session: Session) -> tuple[str, ...]:

@@ -15,9 +15,11 @@ from pinwarp.core.quality import PenaltyCurve
 from pinwarp.core.surface_distance import SurfaceComparison
 from pinwarp.io.chart import Line, Mark, line_chart
 from pinwarp.io.meshes import MeshFile
+from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.io.report import Report, ReportRow
 from pinwarp.session.judging.quality import Quality, quality_of
 from pinwarp.session.session import Session
+from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date, refinement_in_use
 from pinwarp.session.warp.setting_words import settings_in_words
 from pinwarp.session.warp.solved import SolvedWarp
 from pinwarp.session.warp.solver import WarpResult
@@ -25,6 +27,11 @@ from pinwarp.version import __version__
 
 LEFT_OUT_COLOUR, RESIDUAL_COLOUR, SUGGESTED_COLOUR = "#0072B2", "#8b919a", "#009E73"
 _AXES = "xyz"
+FITTED = (
+    " The warp was fitted to the surface: a small distance proves nothing, least of all that "
+    "places lie where they belong. What the pairs say about one another is of the warp of the "
+    "landmarks alone."
+)
 
 
 def report_of(
@@ -88,7 +95,8 @@ def report_of(
             (
                 "Distances",
                 "Between the surfaces as applied: from every vertex of one to the nearest place on "
-                "the other, not weighted by area.",
+                "the other, not weighted by area."
+                + ("" if refinement_in_use(session) is None else FITTED),
             ),
             (
                 "Affine part",
@@ -108,11 +116,27 @@ def _facts(session: Session, result: WarpResult) -> tuple[tuple[str, str], ...]:
         ("Unit", unit),
         *settings_in_words(session.settings, unit),
     ]
+    if (refined := refinement_in_use(session)) is not None:
+        facts.append(("Refined", _fitted_text(refined, len(session.pairs), unit)))
+    elif is_out_of_date(session):
+        facts.append(("Refined", OUT_OF_DATE))
     if result.flexibility is not None:
         facts.append(("Flexibility", f"{result.flexibility:.0%}"))
     if result.rms_residual is not None:
         facts.append(("RMS residual", f"{result.rms_residual:.4g} {unit}"))
     return tuple(facts)
+
+
+def _fitted_text(refined: RefinementRecord, pairs: int, unit: str) -> str:
+    met = (
+        "every landmark met"
+        if refined.landmark_tolerance == 0
+        else f"landmarks with a penalty of {refined.landmark_tolerance:.4g} {unit}"
+    )
+    return (
+        f"{len(refined.source) - pairs:,} of {refined.places:,} places fitted to the destination, "
+        f"features larger than {refined.smallest_feature:.4g} {unit} bent, {met}"
+    )
 
 
 def _mesh_text(session: Session, side: Side) -> str:

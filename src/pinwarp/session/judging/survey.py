@@ -147,7 +147,7 @@ class Surveyor:
             return
         self._result, self._maps = None, {}
         self._determinant = determinants(jacobians(shown, mesh.vertices))
-        self._folds = folds_of(self._determinant, mesh, shown)
+        self._folds = folds_of(self._determinant, mesh, shown, len(result.inputs.source))
         assert result.factor is not None, "what is shown was solved from it"
         self._size = overall_size(shown, result.factor)
         self._result = result

@@ -11,6 +11,7 @@ from pinwarp.core.landmarks import Landmark
 from pinwarp.core.mesh import Mesh
 from pinwarp.io.coefficients import Coefficients
 from pinwarp.session.session import Session
+from pinwarp.session.warp.refined import fitted_names
 from pinwarp.session.warp.solved import SolvedWarp, solved, source_of
 from pinwarp.version import __version__
 
@@ -91,9 +92,11 @@ def session_coefficients(session: Session | SolvedWarp) -> Coefficients:
     warp = solved(session)
     session = warp.session
     source, destination = session.source, session.destination
+    names = [pair.name for pair in session.pairs]
+    names += fitted_names(warp.fitted or 0, names)
     return Coefficients(
         spline=warp.applied,
-        names=tuple(pair.name for pair in session.pairs),
+        names=tuple(names),
         unit=session.unit,
         settings=session.settings,
         source_sha256=source.sha256 if source is not None else "",

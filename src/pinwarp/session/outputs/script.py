@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import fields
+from dataclasses import fields, replace
 from enum import Enum
 from pathlib import Path
 
 from pinwarp.core.errors import PinwarpError
+from pinwarp.core.landmarks import Landmark
 from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
 from pinwarp.io.mesh_reference import MeshReference
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session.session import Session
-from pinwarp.session.warp.component_words import applied_in_words
+from pinwarp.session.warp.refined import fitted_names, refinement_in_use, warp_in_words
 from pinwarp.version import __version__
 
 # Told even where they are as usual.
@@ -36,7 +37,7 @@ def script_of(session: Session, folder: Path) -> str:
     Raises
     ------
     PinwarpError
-        When there is no source mesh or no pair.
+        When there is no source mesh or no pair, or only a part of a refined warp is applied.
 
     Examples
     --------
@@ -46,20 +47,21 @@ def script_of(session: Session, folder: Path) -> str:
     >>> [line for line in script.splitlines() if line.startswith("SOURCE_MESH")]
     ["SOURCE_MESH = HERE / 'femur_generic.ply'"]
     """
-    if session.source is None:
+    source = session.source
+    if source is None:
         raise PinwarpError("There is no source mesh to warp: open one first.")
     if not session.pairs:
         raise PinwarpError("There is no pair yet: place a landmark on both meshes first.")
-    path = session.source.path
+    path, words = source.path, warp_in_words(session)
     warped = f"{path.stem}_warped{path.suffix}"
+    session = _of_plain_pairs(session)
     pairs = [
         f"    {pair.name!r}: ({pair.source!r}, {pair.destination!r})," for pair in session.pairs
     ]
-    changes, imports = _as_seen(session.source)
+    changes, imports = _as_seen(source)
     return "\n".join(
         [
-            f'"""Warp a mesh as pinwarp {__version__} did: {applied_in_words(session.settings)}, '
-            f'{len(pairs)} pairs."""',
+            f'"""Warp a mesh as pinwarp {__version__} did: {words}, {len(pairs)} pairs."""',
             "",
             *(["from dataclasses import replace"] if changes else []),
             "from pathlib import Path",
@@ -69,7 +71,7 @@ def script_of(session: Session, folder: Path) -> str:
             "",
             "HERE = Path(__file__).resolve().parent",
             f"SOURCE_MESH = HERE / {_relative(path, folder)!r}",
-            f"SOURCE_SHA256 = {session.source.sha256!r}",
+            f"SOURCE_SHA256 = {source.sha256!r}",
             f"WARPED_MESH = HERE / {warped!r}",
             "",
             f"# name: (source, destination), in {' '.join(session.unit.split())}",
@@ -92,6 +94,24 @@ def script_of(session: Session, folder: Path) -> str:
             'print(f"Wrote {WARPED_MESH}")',
             "",
         ]
+    )
+
+
+def _of_plain_pairs(session: Session) -> Session:
+    """Return the session with what its refinement fitted as pairs like any other."""
+    refined = refinement_in_use(session)
+    if refined is None:
+        return session
+    if not session.settings.is_whole:
+        raise PinwarpError("A script can only apply a refined warp in full: choose the full warp.")
+    names = [pair.name for pair in session.pairs]
+    names += fitted_names(len(refined.source) - len(names), names)
+    rows = zip(names, refined.source, refined.destination, strict=True)
+    return replace(
+        session,
+        landmarks=tuple(Landmark(name, source, place) for name, source, place in rows),
+        settings=USUAL_SETTINGS,
+        refinement=None,
     )
 
 

@@ -18,6 +18,7 @@ from pinwarp.session.outputs.replacing import refuse_to_replace
 from pinwarp.session.session import Session, to_record
 from pinwarp.session.study.subject import Outcome, Task, made_from, places_of, warp_subject
 from pinwarp.session.study.workers import Runner, WorkEnded
+from pinwarp.session.warp.refining import RefinementOptions
 
 SUMMARY = "summary.csv"
 DONE, FAILED = "done", "failed"
@@ -62,6 +63,7 @@ def plan(
     *,
     suffix: str | None = None,
     inputs: Iterable[Path] = (),
+    refinement: RefinementOptions | None = None,
 ) -> tuple[Task, ...]:
     """Return what is to be done for each subject; nothing is written yet.
 
@@ -78,12 +80,14 @@ def plan(
         The format of the warped meshes; without it, the source's.
     inputs
         Further files that must not be overwritten.
+    refinement
+        How each warp is refined to its subject's surface; without it none is.
 
     Raises
     ------
     PinwarpError
-        When the source has no mesh or no landmark for pairs, the format is not known, or an
-        output would replace an input.
+        When the source has no mesh or no landmark for pairs, the format is not known, an output
+        would replace an input, or a subject has no mesh to be refined to.
 
     Examples
     --------
@@ -111,7 +115,21 @@ def plan(
         raise PinwarpError(f"Meshes of the type {suffix!r} are not supported: choose of {known}.")
     has_passengers = any(x.role is Role.PASSENGER for x in landmarks)
     # Small enough to be sent to a worker, which reads the mesh itself.
-    shared = replace(source, source=record.source_mesh, destination=None, landmarks=landmarks)
+    # A refinement of the source belongs to the destination it has, not to the subjects.
+    shared = replace(
+        source,
+        source=record.source_mesh,
+        destination=None,
+        landmarks=landmarks,
+        refinement=None,
+    )
+    if refinement is not None:
+        without = next((x for x in manifest.subjects if x.destination_mesh is None), None)
+        if without is not None:
+            raise PinwarpError(
+                f"{without.name} has no destination_mesh in {manifest.path.name}: without one "
+                "there is no surface to refine to."
+            )
     tasks = tuple(
         Task(
             subject=subject,
@@ -124,6 +142,7 @@ def plan(
             passengers=(
                 folder / f"{subject.name}_passengers.landmarks.csv" if has_passengers else None
             ),
+            refinement=refinement,
         )
         for subject in manifest.subjects
     )
@@ -269,6 +288,7 @@ def _row(task: Task, result: Outcome | Exception) -> SummaryRow:
         "distance_mean": None if distance is None else distance.mean,
         "distance_95": None if distance is None else distance.percentile_95,
         "distance_max": None if distance is None else distance.maximum,
+        "fitted": checked.fitted,
     }
     return (
         row

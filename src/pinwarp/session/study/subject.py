@@ -6,7 +6,7 @@ import functools
 import hashlib
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError, PinwarpError, words_of
@@ -17,11 +17,13 @@ from pinwarp.io.landmark_files import LandmarkReading, read_landmarks, write_lan
 from pinwarp.io.manifest import Subject
 from pinwarp.io.meshes import MeshFile, read_mesh, write_mesh
 from pinwarp.io.reading import hash_of
+from pinwarp.io.refinement_record import METHOD
 from pinwarp.io.session_file import MeshReference
 from pinwarp.session.importing.conversion import frame_notes
 from pinwarp.session.judging.check import Check, check
 from pinwarp.session.outputs.exports import warped_mesh, warped_passengers
 from pinwarp.session.session import Session, as_seen
+from pinwarp.session.warp.refining import RefinementOptions, refined_session
 from pinwarp.session.warp.solved import solved
 from pinwarp.version import __version__
 
@@ -42,6 +44,8 @@ class Task:
         Where the warped mesh goes.
     passengers
         Where the warped passengers go; None where there are none.
+    refinement
+        How the warp is refined to the subject's surface; None where it is not.
     """
 
     subject: Subject
@@ -49,6 +53,7 @@ class Task:
     session: Session
     mesh: Path
     passengers: Path | None
+    refinement: RefinementOptions | None = None
 
     @property
     def outputs(self) -> tuple[Path, ...]:
@@ -116,6 +121,11 @@ def _warp(task: Task) -> tuple[Check, tuple[str, ...]]:
         session = session.with_mesh(Side.SOURCE, _source(task.session.source))
     if subject.destination_mesh is not None:
         session = session.with_mesh(Side.DESTINATION, read_mesh(subject.destination_mesh))
+    if task.refinement is not None:
+        session, refined = refined_session(session, task.refinement)
+        if refined.folding:
+            folding = counted(refined.folding, "vertex", "vertices")
+            notes = (*notes, f"{folding} would have folded: refined less.")
     warp = solved(session)
     checked = check(warp)
     write_mesh(task.mesh, warped_mesh(warp))
@@ -229,6 +239,7 @@ def made_from(task: Task) -> str:
         _content(task, subject.destination_landmarks),
         _content(task, subject.destination_mesh),
         task.mesh.suffix,
+        *(() if task.refinement is None else (astuple(task.refinement), METHOD)),
     )
     return f"sha256:{hashlib.sha256(repr(parts).encode()).hexdigest()[:32]}"
 

@@ -62,6 +62,12 @@ class SolvedWarp:
         return np.array(self.result.inputs.destination)
 
     @property
+    def fitted(self) -> int | None:
+        """How many places it was fitted to beside the pairs; None where it is not refined."""
+        refined = self.result.inputs.refinement
+        return None if refined is None else len(refined.source) - len(self.destination)
+
+    @property
     def residuals(self) -> Matrix:
         """How far each pair's source is carried from its destination, (n,)."""
         assert self.result.residuals is not None, "what is solved has residuals"
@@ -108,7 +114,8 @@ class SolvedWarp:
         mesh = self.session.mesh(Side.SOURCE)
         if mesh is None:
             return None
-        return folds_of(determinants(jacobians(self.drawn, mesh.vertices)), mesh, self.drawn)
+        determinant = determinants(jacobians(self.drawn, mesh.vertices))
+        return folds_of(determinant, mesh, self.drawn, len(self.destination))
 
     @cached_property
     def destination_index(self) -> SurfaceIndex | None:
@@ -171,7 +178,7 @@ def solved(session: Session | SolvedWarp, known: WarpResult | None = None) -> So
     result = known
     if known is None or known.inputs != WarpInputs.of(session, known.inputs.stand_in):
         # The solver would warp the mesh in single precision, for the screen.
-        result = WarpSolver().solve_landmarks(WarpInputs.of(replace(session, source=None)))
+        result = WarpSolver().solve_landmarks(replace(WarpInputs.of(session), mesh=None))
     if result is None or result.factor is None or result.spline is None:
         raise PinwarpError((result and result.problem) or NO_PAIR)
     return SolvedWarp(session, result.factor, result.spline, result)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.core.components import Components, applied
+from pinwarp.core.components import applied
 from pinwarp.core.errors import PinwarpError, RangeError
 from pinwarp.core.factor import SourceFactor, factorise
 from pinwarp.core.landmarks import Position, Side
@@ -24,7 +24,9 @@ from pinwarp.core.live import (
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import PenaltyConvention, Spline, solve
+from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.session.session import Session
+from pinwarp.session.warp.refined import refined_spline, refinement_in_use
 
 Matrix = NDArray[np.float64]
 
@@ -42,6 +44,7 @@ class WarpInputs:
     mesh: Mesh | None
     stand_in: Mesh | None
     passengers: tuple[Position, ...]
+    refinement: RefinementRecord | None = None
 
     @classmethod
     def of(cls, session: Session, stand_in: Mesh | None = None) -> WarpInputs:
@@ -64,6 +67,7 @@ class WarpInputs:
             passengers=tuple(
                 passenger.source for passenger in session.passengers if passenger.source is not None
             ),
+            refinement=refinement_in_use(session),
         )
 
 
@@ -244,6 +248,8 @@ class WarpSolver:
             factor = factorise(inputs.source, planar=settings.planar)
             self.factorisations += 1
         self.solves += 1
+        if inputs.refinement is not None:
+            return factor, refined_spline(inputs.refinement)
         return factor, solve(factor, inputs.destination, settings.penalty, settings.convention)
 
     def _unless_kept(
@@ -277,7 +283,8 @@ class WarpSolver:
             return None
         was = last.inputs
         now = inputs.settings
-        if not now.is_whole or was.source != inputs.source:
+        # What is refined is neither the landmarks' sweep nor their influence.
+        if inputs.refinement is not None or not now.is_whole or was.source != inputs.source:
             return None
         # Nothing but the penalty may differ: whatever else is set, now or in times to come.
         if replace(was.settings, penalty=now.penalty) != now:
@@ -294,7 +301,10 @@ class WarpSolver:
             for row, (a, b) in enumerate(zip(was.destination, inputs.destination, strict=True))
             if a != b
         ]
-        if len(moved) != 1 or was.settings != now or not can_follow(factor):
+        # A refined warp follows no landmark: it is out of date once one moves.
+        if was.refinement is not None or len(moved) != 1 or was.settings != now:
+            return None
+        if not can_follow(factor):
             return None
         return self._followed(inputs, last.spline, factor, mesh, moved[0])
 
@@ -337,5 +347,5 @@ def _factorises_the_same(a: WarpInputs, b: WarpInputs) -> bool:
 
 def _solves_the_same(a: WarpInputs, b: WarpInputs) -> bool:
     """Whether two warps are one, of which more or less is applied."""
-    wholes = [replace(x.settings, components=Components.FULL, blend=1.0) for x in (a, b)]
-    return a.destination == b.destination and wholes[0] == wholes[1]
+    wholes = [(x.destination, x.settings.whole, x.refinement) for x in (a, b)]
+    return wholes[0] == wholes[1]
