@@ -75,10 +75,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="make bench")
     parser.add_argument("--json", type=Path, help="write the figures to this file as well")
     parser.add_argument(
-        "--only", nargs="*", help="solve, point, evaluate, live, quality, memory, frames, refresh"
+        "--only",
+        nargs="*",
+        help="solve, point, evaluate, live, quality, slide, refine, refined, memory, frames, "
+        "refresh",
     )
     options = parser.parse_args()
-    from tests.benchmarks import core, frames, peers, quality
+    from tests.benchmarks import core, frames, peers, quality, refinement
 
     parts = {
         "solve": ("One solve", core.solving),
@@ -86,6 +89,9 @@ def main() -> None:
         "evaluate": ("Evaluation at all vertices", core.evaluating),
         "live": ("What the hand feels, against the fastest peer's solve + evaluate", core.living),
         "quality": ("Is this warp right?", quality.judging),
+        "slide": ("Semilandmarks, on one thread", refinement.sliding),
+        "refine": ("Refining to the whole surface", refinement.refining),
+        "refined": ("What came of it (mm)", refinement.refined),
         "memory": ("Peak memory beyond the meshes (MB)", core.remembering),
         "frames": ("In the window", frames.framing),
         "refresh": ("Figures after a drag, 200 pairs", frames.refreshing),
