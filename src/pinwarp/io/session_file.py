@@ -7,11 +7,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError, LandmarkError
+from pinwarp.core.groups import Group
 from pinwarp.core.landmarks import Landmark, duplicate_names
 from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
 from pinwarp.io.atomic import write_atomically
-from pinwarp.io.csv_cells import shortened
+from pinwarp.io.csv_cells import as_sentence, shortened
 from pinwarp.io.csv_text import LONGEST_CELL, lines_of, read_text
+from pinwarp.io.group_record import SlidRecord, group_lines, group_rows, groups_of
 from pinwarp.io.mesh_reference import MeshReference, mesh_text
 from pinwarp.io.refinement_record import RefinementRecord, refinement_text
 from pinwarp.io.session_header import (
@@ -41,8 +43,12 @@ class SessionRecord:
         The meshes, or None where none was chosen yet.
     settings
         How the warp is solved and applied.
+    groups
+        Curves and patches of semilandmarks; they make the file one of version 2.
     refinement
-        A refined warp, or None; it makes the file one of version 2.
+        A refined warp, or None; it makes the file one of version 2, too.
+    slid
+        Where the semilandmarks came to rest, or None.
     unit
         The unit of length, for display.
     unknown
@@ -54,7 +60,9 @@ class SessionRecord:
     source_mesh: MeshReference | None = None
     destination_mesh: MeshReference | None = None
     settings: WarpSettings = USUAL_SETTINGS
+    groups: tuple[Group, ...] = ()
     refinement: RefinementRecord | None = None
+    slid: SlidRecord | None = None
     unit: str = "mm"
     unknown: tuple[tuple[str, str], ...] = ()
 
@@ -99,7 +107,8 @@ def write_session(path: str | Path, record: SessionRecord, *, relative_meshes: b
             )
     folder = Path(os.path.abspath(path)).parent if relative_meshes else None
     refined = record.refinement
-    header = [("pinwarp-session", str(PLAIN if refined is None else VERSION))]
+    is_plain = refined is None and not record.groups
+    header = [("pinwarp-session", str(PLAIN if is_plain else VERSION))]
     for key, mesh in (
         ("source_mesh", record.source_mesh),
         ("destination_mesh", record.destination_mesh),
@@ -113,6 +122,7 @@ def write_session(path: str | Path, record: SessionRecord, *, relative_meshes: b
     header += setting_lines(record.settings, always=True)
     header.append(("unit", record.unit))
     header += setting_lines(record.settings, always=False)
+    header += group_lines(record.groups, record.slid)
     fitted: list[Pair] = []
     if refined is not None:
         header.append(("refine", refinement_text(refined)))
@@ -121,7 +131,7 @@ def write_session(path: str | Path, record: SessionRecord, *, relative_meshes: b
     entries = [" ".join(f"# {key}: {text}".splitlines()).rstrip() for key, text in header]
     entries += [f"# {key}: {text}" if key else f"# {text}" for key, text in record.unknown]
     lines = [header_line(entry) for entry in entries]
-    lines += table_lines(record.landmarks, fitted)
+    lines += table_lines(record.landmarks, fitted, group_rows(record.groups, record.slid))
     write_atomically(path, "".join(lines))
 
 
@@ -158,7 +168,11 @@ def read_session(path: str | Path) -> SessionRecord:
     top = next((n for n, line in enumerate(lines) if not is_header(line)), len(lines))
     separator = max(",;\t", key=lines[top].count) if top < len(lines) else ","
     known, unknown = read_values(path, read_header(path, lines[:top], separator))
-    landmarks, fitted = read_table(path, lines[top:], top + 1, separator)
+    landmarks, fitted, rows = read_table(path, lines[top:], top + 1, separator)
+    try:
+        groups, slid = groups_of(known.pop("groups", ()), rows)
+    except ValueError as error:
+        raise FileFormatError(path, f"{as_sentence(str(error))} {CORRECT}") from None
     refinement = known.pop("refinement", None)
     if (refinement is None) != (not fitted):
         lost = "the line '# refine: ...' is" if refinement is None else "what it fitted is"
@@ -166,4 +180,11 @@ def read_session(path: str | Path) -> SessionRecord:
     if refinement is not None:
         source, destination = zip(*fitted, strict=True)
         refinement = replace(refinement, source=source, destination=destination)
-    return SessionRecord(landmarks=landmarks, refinement=refinement, unknown=unknown, **known)
+    return SessionRecord(
+        landmarks=landmarks,
+        groups=groups,
+        refinement=refinement,
+        slid=slid,
+        unknown=unknown,
+        **known,
+    )

@@ -22,7 +22,7 @@ from pinwarp.io.setting_keys import SETTING_KEYS
 VERSION = 2
 """The newest version of the format that is known."""
 PLAIN = 1
-"""The version of a session without a refinement, which older ones can read."""
+"""The version of a session without groups and refinement, which older ones can read."""
 CORRECT = "Correct it in a text editor, or use an earlier copy of the file."
 
 _FIELDS = {
@@ -36,6 +36,8 @@ _FIELDS = {
     "refine": "refinement",
 }
 """The field of a session record, or of one of its meshes, that each known key fills."""
+GROUP_KEYS = frozenset({"curve", "patch", "patch_around", "slid"})
+"""Keys that describe groups: several lines may have the same."""
 
 
 # To a spreadsheet, what follows a separator is a cell of its own.
@@ -160,7 +162,7 @@ def read_values(
     Returns
     -------
     known
-        Fields of a session record.
+        Fields of a session record; ``groups`` are key and text of the lines that describe some.
     unknown
         Key and text of the other lines, in order.
 
@@ -181,6 +183,9 @@ def read_values(
     unknown, lines = [], {}
     for line, key, text in header:
         lines[key] = line
+        if key in GROUP_KEYS:
+            known.setdefault("groups", []).append((key, text))
+            continue
         if key not in _FIELDS and key not in SETTING_KEYS:
             unknown.append((key, text))
             continue

@@ -1,4 +1,4 @@
-"""The table of a session file: one row per landmark, and below them one per fitted place."""
+"""The table of a session file: one row per landmark; below, points of groups, fitted places."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from pinwarp.io.csv_cells import (
     shortened,
 )
 from pinwarp.io.csv_text import Row, csv_line, rows_of
+from pinwarp.io.group_record import GroupRole, GroupRow
 from pinwarp.io.session_header import CORRECT
 
 _SOURCE = ("source_x", "source_y", "source_z")
@@ -27,11 +28,17 @@ _KNOWN = (*_COLUMNS, _LOCKED)
 # The role of rows that are no landmarks: where a refinement found the surface.
 _FITTED = "fitted"
 
+_GROUPED = frozenset(role.value for role in GroupRole)
+
 Pair = tuple[Position, Position]
 
 
-def table_lines(landmarks: Iterable[Landmark], fitted: Iterable[Pair] = ()) -> list[str]:
-    r"""Return the line of column names, a line per landmark, and one per fitted place.
+def table_lines(
+    landmarks: Iterable[Landmark],
+    fitted: Iterable[Pair] = (),
+    grouped: Iterable[GroupRow] = (),
+) -> list[str]:
+    r"""Return the line of column names, a line per landmark, point of a group and fitted place.
 
     Examples
     --------
@@ -58,6 +65,10 @@ def table_lines(landmarks: Iterable[Landmark], fitted: Iterable[Pair] = ()) -> l
         ]
         lines.append(csv_line(cells))
     empty = [""] * len([*locks, *extra])
+    for row in grouped:
+        places = (*coordinates_text(row.source), *coordinates_text(row.destination))
+        on = "1" if row.enabled else "0"
+        lines.append(csv_line([row.name, row.role.value, on, *places, row.note, *empty]))
     for number, (source, destination) in enumerate(fitted, 1):
         places = (*coordinates_text(source), *coordinates_text(destination))
         lines.append(csv_line([f"{_FITTED}_{number}", _FITTED, "1", *places, "", *empty]))
@@ -66,8 +77,8 @@ def table_lines(landmarks: Iterable[Landmark], fitted: Iterable[Pair] = ()) -> l
 
 def read_table(
     path: str | Path, lines: Sequence[str], first_line: int, separator: str
-) -> tuple[tuple[Landmark, ...], tuple[Pair, ...]]:
-    """Read the column names, and the landmarks and fitted places below them.
+) -> tuple[tuple[Landmark, ...], tuple[Pair, ...], tuple[GroupRow, ...]]:
+    """Read the column names, and the landmarks, fitted places and points of groups below them.
 
     Parameters
     ----------
@@ -99,14 +110,19 @@ def read_table(
     columns = _read_columns(path, rows[0])
     landmarks: dict[str, Landmark] = {}
     fitted: list[Pair] = []
+    grouped: list[GroupRow] = []
     for row in rows[1:]:
         if row.is_blank:
             continue
         is_cut_off = row is rows[-1] and not lines[-1].endswith(("\n", "\r"))
         try:
             values = _values(row, columns, is_cut_off)
-            if values["role"].strip().lower() == _FITTED:
+            role = values["role"].strip().lower()
+            if role == _FITTED:
                 fitted.append(_fitted(values, separator))
+                continue
+            if role in _GROUPED:
+                grouped.append(_grouped(values, separator))
                 continue
             landmark = _landmark(values, columns, separator)
             if landmark.name in landmarks:
@@ -114,7 +130,7 @@ def read_table(
         except ValueError as error:
             raise FileFormatError(path, f"{as_sentence(str(error))} {CORRECT}", row.line) from None
         landmarks[landmark.name] = landmark
-    return tuple(landmarks.values()), tuple(fitted)
+    return tuple(landmarks.values()), tuple(fitted), tuple(grouped)
 
 
 def _read_columns(path: str | Path, row: Row) -> tuple[str, ...]:
@@ -155,6 +171,18 @@ def _fitted(values: dict[str, str], separator: str) -> Pair:
     if source is None or destination is None:
         raise ValueError("a fitted place lacks one of its positions")
     return source, destination
+
+
+def _grouped(values: dict[str, str], separator: str) -> GroupRow:
+    """Make a point of a group of one row, or raise a ValueError with the reason."""
+    return GroupRow(
+        GroupRole(values["role"].strip().lower()),
+        formula_unquoted(values["name"]),
+        _yes_or_no("enabled", values["enabled"]),
+        position_of([values[column] for column in _SOURCE], separator),
+        position_of([values[column] for column in _DESTINATION], separator),
+        formula_unquoted(values["note"]),
+    )
 
 
 def _landmark(values: dict[str, str], columns: Sequence[str], separator: str) -> Landmark:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from pinwarp.core.errors import LandmarkError
+from pinwarp.core.groups import moved_group
 from pinwarp.core.landmarks import Side, scaled
 from pinwarp.core.mesh import Mesh
 from pinwarp.io.meshes import MeshFile
@@ -120,6 +123,10 @@ def scale_side(session: Session, side: Side, factor: float) -> Session:
     session = replace(
         session.with_mesh(side, replace(file, mesh=mesh, scaled=whole)),
         landmarks=scaled(session.landmarks, factor, side),
+        groups=tuple(
+            moved_group(group, side, lambda places: factor * np.array(places))
+            for group in session.groups
+        ),
         settings=replace(session.settings, penalty=penalty),
     )
     if _suits(mesh, session.unit):

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from pinwarp.core.groups import Group, anchored
 from pinwarp.core.landmarks import Landmark, Role, Side, pairs_of
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.mirror import mirrored_mesh
 from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
+from pinwarp.io.group_record import SlidRecord
 from pinwarp.io.meshes import MeshFile
 from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.io.session_file import MeshReference, SessionRecord
@@ -24,11 +26,17 @@ class Session:
         loses nothing), or None.
     landmarks
         In the order of the table; names are unique.
+    groups
+        Curves and patches of semilandmarks, in the order of their list; names are unique. A
+        handle of a curve that is anchored to a landmark is always where that is.
     settings
         How the warp is solved and applied.
     refinement
         The warp refined to the whole surface, where somebody asked for that. It counts only while
         what it was made from is unchanged; see :mod:`pinwarp.session.warp.refined`.
+    slid
+        Where the semilandmarks had come to rest when the session was saved. Where both meshes
+        are there they slide anew; see :mod:`pinwarp.session.warp.sliding`.
     unit
         The unit of the meshes, for display.
     unknown
@@ -45,10 +53,20 @@ class Session:
     source: MeshFile | MeshReference | None = None
     destination: MeshFile | MeshReference | None = None
     landmarks: tuple[Landmark, ...] = ()
+    groups: tuple[Group, ...] = ()
     settings: WarpSettings = USUAL_SETTINGS
     refinement: RefinementRecord | None = None
+    slid: SlidRecord | None = None
     unit: str = "mm"
     unknown: tuple[tuple[str, str], ...] = ()
+
+    def __post_init__(self) -> None:
+        if not self.groups:
+            return
+        # Here, so that no edit of landmarks can forget the curves that are anchored to them.
+        by_name = {landmark.name: landmark for landmark in self.landmarks}
+        groups = tuple(anchored(group, by_name) for group in self.groups)
+        object.__setattr__(self, "groups", groups)
 
     def mesh_file(self, side: Side) -> MeshFile | MeshReference | None:
         """Return the mesh of one side with its origin, or the reference to a missing one."""
@@ -86,6 +104,10 @@ class Session:
                 return index
         return None
 
+    def group(self, name: str) -> Group | None:
+        """Return a curve or patch by its name, or None."""
+        return next((group for group in self.groups if group.name == name), None)
+
     def landmark(self, name: str) -> Landmark | None:
         """Return a landmark by its name, or None."""
         index = self.index_of(name)
@@ -96,10 +118,12 @@ def to_record(session: Session) -> SessionRecord:
     """Return what a session file holds of a session."""
     return SessionRecord(
         landmarks=session.landmarks,
+        groups=session.groups,
         source_mesh=_reference(session.source),
         destination_mesh=_reference(session.destination),
         settings=session.settings,
         refinement=session.refinement,
+        slid=session.slid,
         unit=session.unit,
         unknown=session.unknown,
     )
@@ -115,8 +139,10 @@ def from_record(
         source=_found(source, record.source_mesh),
         destination=_found(destination, record.destination_mesh),
         landmarks=record.landmarks,
+        groups=record.groups,
         settings=record.settings,
         refinement=record.refinement,
+        slid=record.slid,
         unit=record.unit,
         unknown=record.unknown,
     )

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from pinwarp.core.errors import LandmarkError
+from pinwarp.core.groups import Curve, Group, Handle, Patch, moved_group
 from pinwarp.core.landmarks import Side
 from pinwarp.core.mirror import mirrored_mesh, mirrored_points, toggled
+from pinwarp.core.words import listed
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session.edits.settings import set_unit
 from pinwarp.session.mesh_units import likely_unit
@@ -34,7 +36,20 @@ def swap_sides(session: Session) -> Session:
 
     Every position stays on the bone that it was placed on. A passenger goes with its bone too:
     on the destination it is kept, but nothing carries it until the sides are swapped back.
+
+    Raises
+    ------
+    LandmarkError
+        When there are semilandmarks that nobody placed on the destination.
     """
+    one_sided = [
+        group.name for group in session.groups if isinstance(group, Patch) or not group.is_drawn
+    ]
+    if one_sided:
+        raise LandmarkError(
+            f"{listed(one_sided)} cannot change sides, since the destination has no points of "
+            "theirs that somebody placed: accept the ghosts of curves, and remove patches first."
+        )
     return replace(
         session,
         source=session.destination,
@@ -43,7 +58,18 @@ def swap_sides(session: Session) -> Session:
             replace(landmark, source=landmark.destination, destination=landmark.source)
             for landmark in session.landmarks
         ),
+        groups=tuple(map(_swapped, session.groups)),
     )
+
+
+def _swapped(group: Group) -> Group:
+    assert isinstance(group, Curve), "a patch has no points on the destination"
+    handles = tuple(
+        Handle(handle.destination, handle.source, handle.landmark)
+        for handle in group.handles
+        if handle.destination is not None
+    )
+    return replace(group, handles=handles)
 
 
 def mirror_source(session: Session, axis: str) -> Session:
@@ -68,4 +94,8 @@ def mirror_source(session: Session, axis: str) -> Session:
             (moved,) = mirrored_points([landmark.source], file.mesh, axis)
             landmark = landmark.placed(Side.SOURCE, moved)
         landmarks.append(landmark)
-    return replace(session, source=mirrored, landmarks=tuple(landmarks))
+    groups = tuple(
+        moved_group(group, Side.SOURCE, lambda places: mirrored_points(places, file.mesh, axis))
+        for group in session.groups
+    )
+    return replace(session, source=mirrored, landmarks=tuple(landmarks), groups=groups)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 
 from pinwarp.core.errors import LandmarkError
+from pinwarp.core.groups import Group, renamed_anchors
 from pinwarp.core.landmarks import Landmark, Role
 from pinwarp.session.session import Session
 
@@ -58,10 +59,14 @@ def rename_many(session: Session, new_names: Mapping[str, str]) -> Session:
         if new_name in given:
             raise LandmarkError(f"Two landmarks would be called {new_name}.")
         given.add(new_name)
+    # Both at once: a curve lets go of a landmark that is not there.
+    anchors = {old: new.strip() for old, new in new_names.items()}
+    groups = tuple(renamed_anchors(group, anchors) for group in session.groups)
     return all_changed(
         session,
         new_names,
         lambda landmark: replace(landmark, name=new_names[landmark.name].strip()),
+        groups=groups,
     )
 
 
@@ -123,9 +128,15 @@ def changed(session: Session, name: str, change: Callable[[Landmark], Landmark])
 
 
 def all_changed(
-    session: Session, names: Iterable[str], change: Callable[[Landmark], Landmark]
+    session: Session,
+    names: Iterable[str],
+    change: Callable[[Landmark], Landmark],
+    groups: tuple[Group, ...] | None = None,
 ) -> Session:
-    """Return the session with some landmarks changed, all of which must be there."""
+    """Return the session with some landmarks changed, all of which must be there.
+
+    What of the curves and patches must change along with them is given, too.
+    """
     changing = _set_of(names)
     if missing := changing - {landmark.name for landmark in session.landmarks}:
         raise LandmarkError(f"There is no landmark called {min(missing)}.")
@@ -135,6 +146,7 @@ def all_changed(
             change(landmark) if landmark.name in changing else landmark
             for landmark in session.landmarks
         ),
+        groups=session.groups if groups is None else groups,
     )
 
 

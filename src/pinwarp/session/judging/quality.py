@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,7 @@ from pinwarp.core.spline import Spline, solve
 from pinwarp.core.suspects import is_mirrored, suspects, swapped_pairs
 from pinwarp.session.session import Session
 from pinwarp.session.warp.pair_names import pair_names
+from pinwarp.session.warp.sliding import SlidGroups
 from pinwarp.session.warp.solver import WarpInputs, WarpResult
 
 Matrix = NDArray[np.float64]
@@ -108,7 +109,8 @@ class Quality:
         Examples
         --------
         >>> from pinwarp.core.landmarks import Landmark
-        >>> from pinwarp.session.warp.solver import WarpSolver
+        >>> from pinwarp.session.warp.sliding import SlidGroups
+        from pinwarp.session.warp.solver import WarpSolver
         >>> places = [(0, 0, 0), (0, 0, 0), (9, 0, 0), (0, 9, 0), (0, 0, 9)]
         >>> ends = [(0, 0, 0), (2, 0, 0), *places[2:]]
         >>> session = Session(landmarks=tuple(map(Landmark, "abcde", places, ends)))
@@ -179,14 +181,21 @@ def _judged(result: WarpResult) -> Quality | None:
     destination = np.array(inputs.destination)
     left_out = curve = None
     enough = len(inputs.source) >= LEAST_PAIRS and len(factor.poles) > 0
+    at_rest = result.semilandmarks
     if enough:
-        curve = penalty_curve(factor, destination)
+        # Where semilandmarks slide, nobody knows what another penalty would do to them.
+        curve = penalty_curve(factor, destination) if at_rest is None else None
         if inputs.settings.is_regular:
             left_out = leave_one_out(factor, destination, inputs.settings.penalty)
+            if at_rest is not None and not math.isinf(inputs.settings.penalty):
+                left_out = _while_others_slide(left_out, at_rest, inputs.settings.penalty)
+    assert result.fit is not None, "what has a spline was solved from something"
     fit = spline
     if not math.isinf(inputs.settings.penalty):
-        fit = solve(factor, destination, np.inf)
-    found = _about_pairs(factor, inputs.source, destination, fit) if enough else ()
+        fit = solve(*result.fit, np.inf)
+    # Of the pairs alone: a semilandmark is never wrong, since nobody placed it.
+    pairs_fit = fit if at_rest is None else solve(factor, destination, np.inf)
+    found = _about_pairs(factor, inputs.source, destination, pairs_fit) if enough else ()
     return Quality(
         inputs=inputs,
         left_out=left_out,
@@ -194,20 +203,30 @@ def _judged(result: WarpResult) -> Quality | None:
         findings=gravest_first((*found, *spline.findings)),
         affine=decompose(fit.affine, factor.centre),
         energy=bending_energy(spline),
-        rms_by_components=_rms_by_components(factor, spline, fit, destination),
+        rms_by_components=_rms_by_components(result, spline, fit),
         rank=factor.rank,
     )
 
 
-def _rms_by_components(
-    factor: SourceFactor, spline: Spline, fit: Spline, destination: Matrix
-) -> dict[Components, float]:
+def _while_others_slide(alone: LeaveOneOut, at_rest: SlidGroups, penalty: float) -> LeaveOneOut:
+    """Return leave-one-out errors of the pairs while semilandmarks keep their planes and lines.
+
+    How far each may be expected to miss stays what the pairs say: it finds isolated landmarks.
+    """
+    errors = at_rest.left_out(penalty)
+    distances = np.linalg.norm(errors, axis=1)
+    return replace(alone, errors=errors, distances=distances, rms=rms(distances))
+
+
+def _rms_by_components(result: WarpResult, spline: Spline, fit: Spline) -> dict[Components, float]:
+    assert result.fit is not None, "what has a spline was solved from something"
+    source, destination = np.array(result.inputs.source), np.array(result.inputs.destination)
     left = {}
     for part in {as_drawn(part) for part in Components}:
         # The affine fit is known already.
         is_fit = part is Components.AFFINE
-        warp = fit if is_fit else applied(spline, factor, destination, part)
-        left[part] = rms(np.linalg.norm(warp.evaluate(factor.source) - destination, axis=1))
+        warp = fit if is_fit else applied(spline, *result.fit, part)
+        left[part] = rms(np.linalg.norm(warp.evaluate(source) - destination, axis=1))
     return {part: left[as_drawn(part)] for part in Components}
 
 

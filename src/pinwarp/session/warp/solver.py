@@ -27,6 +27,7 @@ from pinwarp.core.spline import PenaltyConvention, Spline, solve
 from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.session.session import Session
 from pinwarp.session.warp.refined import refined_spline, refinement_in_use
+from pinwarp.session.warp.sliding import Slider, SlidGroups, SlidingInputs
 
 Matrix = NDArray[np.float64]
 
@@ -45,6 +46,7 @@ class WarpInputs:
     stand_in: Mesh | None
     passengers: tuple[Position, ...]
     refinement: RefinementRecord | None = None
+    sliding: SlidingInputs | None = None
 
     @classmethod
     def of(cls, session: Session, stand_in: Mesh | None = None) -> WarpInputs:
@@ -58,16 +60,31 @@ class WarpInputs:
             A coarse source mesh, drawn while something moves; None where the mesh itself will do.
         """
         pairs = session.pairs
+        source = tuple(pair.source for pair in pairs if pair.source is not None)
+        destination = tuple(pair.destination for pair in pairs if pair.destination is not None)
+        refinement = refinement_in_use(session)
+        sliding = None
+        # What is refined was fitted to the surface already.
+        if session.groups and refinement is None:
+            sliding = SlidingInputs(
+                source,
+                destination,
+                tuple(pair.name for pair in pairs),
+                session.groups,
+                session.mesh(Side.SOURCE),
+                session.mesh(Side.DESTINATION),
+            )
         return cls(
-            source=tuple(pair.source for pair in pairs if pair.source is not None),
-            destination=tuple(pair.destination for pair in pairs if pair.destination is not None),
+            source=source,
+            destination=destination,
             settings=session.settings.drawn,
             mesh=session.mesh(Side.SOURCE),
             stand_in=stand_in,
             passengers=tuple(
                 passenger.source for passenger in session.passengers if passenger.source is not None
             ),
-            refinement=refinement_in_use(session),
+            refinement=refinement,
+            sliding=sliding,
         )
 
 
@@ -80,7 +97,15 @@ class WarpResult:
     inputs
         What it was computed from.
     factor, spline
-        None when there are no pairs or the solve failed.
+        Of the pairs, and the warp: None when there are no pairs or the solve failed.
+    semilandmarks
+        Where they are at rest, or were when something began to move; None without groups, and
+        where they cannot slide.
+    not_sliding
+        Why they cannot, in words for the user: the warp is then that of the pairs alone.
+    fit
+        What the warp was solved from: factor and (k, 3) destinations of the pairs and, below
+        them, of the semilandmarks.
     shown
         What is applied of the spline: all that follows here is its doing.
     landmarks : (n, 3) float64
@@ -100,6 +125,9 @@ class WarpResult:
     inputs: WarpInputs
     factor: SourceFactor | None = None
     spline: Spline | None = None
+    semilandmarks: SlidGroups | None = None
+    not_sliding: str | None = None
+    fit: tuple[SourceFactor, Matrix] | None = None
     shown: Spline | None = None
     landmarks: Matrix | None = None
     residuals: Matrix | None = None
@@ -136,6 +164,7 @@ class WarpSolver:
         self._last: WarpResult | None = None
         self._moving: WarpResult | None = None
         self._points: weakref.WeakKeyDictionary[Mesh, PreviewPoints] = weakref.WeakKeyDictionary()
+        self._slider = Slider()
         self._sweep: tuple[object, PenaltySweep] | None = None
         self._influence: tuple[object, Influence] | None = None
         self.factorisations = 0
@@ -175,13 +204,13 @@ class WarpSolver:
         Compared with the last state of rest, a changed penalty is swept, one changed destination
         is followed, anything else is evaluated directly. Only the stand-in is warped, if there is.
         """
-        result = self.solve_landmarks(inputs)
+        result = self.solve_landmarks(inputs, moving=True)
         self._moving = result
         mesh = inputs.stand_in or inputs.mesh
         if result.factor is None or result.shown is None or mesh is None:
             return result
         try:
-            vertices = self._shortcut(inputs, result.factor, result.shown, mesh)
+            vertices = self._shortcut(result, result.shown, mesh)
             if vertices is None:
                 vertices = self._evaluate(result.shown, mesh)
         except RangeError as error:
@@ -197,13 +226,14 @@ class WarpSolver:
             _ = result.factor.modes
         return result
 
-    def solve_landmarks(self, inputs: WarpInputs) -> WarpResult:
-        """Solve, without warping any mesh."""
+    def solve_landmarks(self, inputs: WarpInputs, *, moving: bool = False) -> WarpResult:
+        """Solve, without warping any mesh; while something moves, semilandmarks are held."""
         if not inputs.source:
             return WarpResult(inputs)
         try:
-            factor, spline = self._spline(inputs)
-            shown = self._applied(inputs, factor, spline)
+            result = self._solved(inputs, moving)
+            assert result.spline is not None, "what is solved has a spline"
+            shown = self._applied(result)
             landmarks = shown.evaluate(np.array(inputs.source))
             passengers = shown.evaluate(np.array(inputs.passengers).reshape(-1, 3))
         except PinwarpError as error:
@@ -212,45 +242,85 @@ class WarpSolver:
         residuals = np.linalg.norm(landmarks - destination, axis=1)
         # What is only rounding must not sort rows or draw bars.
         residuals[residuals < rounding_among(destination)] = 0.0
-        return WarpResult(
-            inputs=inputs,
-            factor=factor,
-            spline=spline,
-            shown=shown,
-            landmarks=landmarks,
-            residuals=residuals,
-            passengers=passengers,
+        return replace(
+            result, shown=shown, landmarks=landmarks, residuals=residuals, passengers=passengers
         )
 
-    def _applied(self, inputs: WarpInputs, factor: SourceFactor, spline: Spline) -> Spline:
+    def _applied(self, result: WarpResult) -> Spline:
         for known in (self._moving, self._last):
             if (
                 known is not None
                 and known.shown is not None
-                and known.spline is spline
-                and known.inputs.settings == inputs.settings
+                and known.spline is result.spline
+                and known.inputs.settings == result.inputs.settings
             ):
                 return known.shown
-        settings = inputs.settings
-        return applied(spline, factor, inputs.destination, settings.components, settings.blend)
+        settings = result.inputs.settings
+        assert result.spline is not None, "what is solved has a spline"
+        assert result.fit is not None, "and was solved from something"
+        return applied(result.spline, *result.fit, settings.components, settings.blend)
 
-    def _spline(self, inputs: WarpInputs) -> tuple[SourceFactor, Spline]:
+    def _solved(self, inputs: WarpInputs, moving: bool) -> WarpResult:
+        """Return factor and spline, of what is known already as far as it is the same."""
         factor = None
         for known in (self._moving, self._last):
             if known is None or known.factor is None:
                 continue
             if _factorises_the_same(known.inputs, inputs):
                 factor = known.factor
-                if known.spline is not None and _solves_the_same(known.inputs, inputs):
-                    return factor, known.spline
+                # What was only held while something moved has still to come to rest.
+                held = known is not self._last and inputs.sliding is not None
+                same = known.spline is not None and _solves_the_same(known.inputs, inputs)
+                if same and (moving or not held):
+                    return WarpResult(
+                        inputs,
+                        factor,
+                        known.spline,
+                        known.semilandmarks,
+                        known.not_sliding,
+                        known.fit,
+                    )
         settings = inputs.settings
         if factor is None:
             factor = factorise(inputs.source, planar=settings.planar)
             self.factorisations += 1
+        at_rest, not_sliding = self._slid(inputs, moving)
+        fit = (factor, np.array(inputs.destination))
+        if at_rest is not None:
+            fit = (at_rest.factor, at_rest.targets)
+            assert inputs.sliding is not None, "what slid was asked to"
+            if moving and not self._rests(inputs):
+                fit = at_rest.following(np.array(inputs.source), np.array(inputs.destination))
         self.solves += 1
         if inputs.refinement is not None:
-            return factor, refined_spline(inputs.refinement)
-        return factor, solve(factor, inputs.destination, settings.penalty, settings.convention)
+            spline = refined_spline(inputs.refinement)
+        else:
+            spline = solve(*fit, settings.penalty, settings.convention)
+        return WarpResult(inputs, factor, spline, at_rest, not_sliding, fit)
+
+    def _slid(self, inputs: WarpInputs, moving: bool) -> tuple[SlidGroups | None, str | None]:
+        """Return the semilandmarks at rest, or why there are none."""
+        if inputs.sliding is None:
+            return None, None
+        last = self._last
+        if moving and last is not None and last.inputs.sliding is not None:
+            was, now = last.inputs.sliding, inputs.sliding
+            # As long as the same points slide on the same bones they are only held meanwhile.
+            if (was.names, was.mesh, was.target) == (now.names, now.mesh, now.target):
+                return last.semilandmarks, last.not_sliding
+        if not inputs.settings.is_regular:
+            return None, (
+                "Semilandmarks slide in the regularising convention only: choose it, or remove "
+                "curves and patches."
+            )
+        try:
+            return self._slider.slide(inputs.sliding), None
+        except PinwarpError as error:
+            return None, str(error)
+
+    def _rests(self, inputs: WarpInputs) -> bool:
+        """Whether landmarks and groups are what they were at rest."""
+        return self._last is not None and self._last.inputs.sliding == inputs.sliding
 
     def _unless_kept(
         self,
@@ -276,8 +346,9 @@ class WarpSolver:
         return self._points[mesh]
 
     def _shortcut(
-        self, inputs: WarpInputs, factor: SourceFactor, shown: Spline, mesh: Mesh
+        self, result: WarpResult, shown: Spline, mesh: Mesh
     ) -> NDArray[np.float32] | None:
+        inputs = result.inputs
         last = self._last
         if last is None or last.spline is None:
             return None
@@ -294,7 +365,11 @@ class WarpSolver:
             return None
         if was.destination == inputs.destination:
             if now.convention is PenaltyConvention.REGULARISING:
-                return self._swept(inputs, factor, mesh)
+                return self._swept(result, mesh)
+            return None
+        # Semilandmarks follow a landmark that moves, so that each frame is a solve.
+        factor = result.factor
+        if factor is None or inputs.sliding is not None:
             return None
         moved = [
             row
@@ -308,13 +383,16 @@ class WarpSolver:
             return None
         return self._followed(inputs, last.spline, factor, mesh, moved[0])
 
-    def _swept(self, inputs: WarpInputs, factor: SourceFactor, mesh: Mesh) -> NDArray[np.float32]:
-        key = (replace(inputs.settings, penalty=0.0), inputs.source, inputs.destination, mesh)
+    def _swept(self, result: WarpResult, mesh: Mesh) -> NDArray[np.float32]:
+        inputs = result.inputs
+        settings = replace(inputs.settings, penalty=0.0)
+        key = (settings, inputs.source, inputs.destination, inputs.sliding, mesh)
         if self._sweep is None or self._sweep[0] != key:
             # Free the old basis before the new one is made: each may be 100 MB.
             self._sweep = self._influence = None
             points = self._preview_points(mesh)
-            self._sweep = (key, PenaltySweep(factor, inputs.destination, points))
+            assert result.fit is not None, "what is swept was solved"
+            self._sweep = (key, PenaltySweep(*result.fit, points))
         return self._sweep[1].at(inputs.settings.penalty)
 
     def _followed(
@@ -347,5 +425,5 @@ def _factorises_the_same(a: WarpInputs, b: WarpInputs) -> bool:
 
 def _solves_the_same(a: WarpInputs, b: WarpInputs) -> bool:
     """Whether two warps are one, of which more or less is applied."""
-    wholes = [(x.destination, x.settings.whole, x.refinement) for x in (a, b)]
+    wholes = [(x.destination, x.settings.whole, x.refinement, x.sliding) for x in (a, b)]
     return wholes[0] == wholes[1]

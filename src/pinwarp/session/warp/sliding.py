@@ -1,0 +1,267 @@
+"""The semilandmarks of a session: brought to rest on the destination, and held while one drags.
+
+Where they rest follows from landmarks, groups and meshes: it is no part of a session, nor of its
+history. Once at rest they are pairs like others for the solver, so the penalty, the components and
+all exports go on as ever.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pinwarp.core.conditions import ConditionFactor, factorise_conditions
+from pinwarp.core.curves import PathFinder
+from pinwarp.core.errors import PinwarpError
+from pinwarp.core.factor import SourceFactor, factorise
+from pinwarp.core.groups import Course, Curve, Gathered, Group, gathered, path_of
+from pinwarp.core.landmarks import Position, Side
+from pinwarp.core.mesh import Mesh
+from pinwarp.core.sliding import Slid, slide
+from pinwarp.core.spline import Spline
+from pinwarp.core.surface import Surface
+
+Matrix = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class SlidingInputs:
+    """All that the rest of semilandmarks follows from, and nothing that it does not."""
+
+    source: tuple[Position, ...]
+    destination: tuple[Position, ...]
+    names: tuple[str, ...]
+    groups: tuple[Group, ...]
+    mesh: Mesh | None
+    target: Mesh | None
+
+
+@dataclass(frozen=True, eq=False)
+class SlidGroup:
+    """The points of one group at rest.
+
+    Attributes
+    ----------
+    group
+        The curve or patch.
+    course
+        Where a curve runs on the source; None for a patch.
+    numbers : (m,) int64
+        Which of its points took part.
+    source, positions : (m, 3) float64
+        Where they are on the source, and on the destination.
+    is_freed : (m,) bool
+        Which have no counterpart there.
+    slid : (m,)
+        How far each went from where the landmarks alone carry it, in destination mesh units.
+    """
+
+    group: Group
+    course: Course | None
+    numbers: NDArray[np.int64]
+    source: Matrix
+    positions: Matrix
+    is_freed: Mask
+    slid: Matrix
+
+    @property
+    def freed(self) -> int:
+        """How many have no counterpart."""
+        return int(np.count_nonzero(self.is_freed))
+
+    @property
+    def largest_slide(self) -> float:
+        """How far the one went that went furthest; 0 where none takes part."""
+        used = self.slid[~self.is_freed]
+        return float(used.max()) if len(used) else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class SlidGroups:
+    """All semilandmarks of a session at rest.
+
+    Attributes
+    ----------
+    groups
+        One by one, in the order of the session.
+    slid
+        All at once.
+    landmarks
+        How many rows of the spline's source are landmarks: the first.
+    """
+
+    groups: tuple[SlidGroup, ...]
+    slid: Slid
+    landmarks: int
+
+    @cached_property
+    def factor(self) -> SourceFactor:
+        """What ordinary warps of landmarks and semilandmarks are solved from."""
+        return factorise(self.slid.spline.source)
+
+    @cached_property
+    def targets(self) -> Matrix:
+        """The (n, 3) destinations of the rows of the factor."""
+        return self.slid.spline.evaluate(self.slid.spline.source)
+
+    @property
+    def freed(self) -> int:
+        """How many have no counterpart."""
+        return self.slid.freed
+
+    @property
+    def count(self) -> int:
+        """How many take part in the warp."""
+        return len(self.slid.used) - self.landmarks
+
+    def left_out(self, penalty: float = 0.0) -> Matrix:
+        """Return (n, 3) how far each landmark misses, left out, while the others slide on.
+
+        They keep planes and tangents, not their places; in destination mesh units.
+        """
+        return self._held.leave_one_out(self.targets, np.arange(self.landmarks), penalty)
+
+    @cached_property
+    def _held(self) -> ConditionFactor:
+        return factorise_conditions(self.slid.spline.source, self.slid.conditions)
+
+    def following(self, source: Matrix, destination: Matrix) -> tuple[SourceFactor, Matrix]:
+        """Return factor and destinations for landmarks that were moved, planes and tangents held.
+
+        Parameters
+        ----------
+        source, destination
+            (n, 3) the landmarks as they are now, as many as before.
+
+        Returns
+        -------
+        factor, targets
+            As :attr:`factor` and :attr:`targets` are at rest; nothing is measured anew on the
+            surface, which takes a hundredth of a slide.
+        """
+        n = self.landmarks
+        factor, held = self.factor, self._held
+        if not np.array_equal(factor.source[:n], source):
+            places = np.vstack([source, factor.source[n:]])
+            factor = factorise(places)
+            held = factorise_conditions(places, self.slid.conditions)
+        targets = self.targets.copy()
+        targets[:n] = destination
+        return factor, held.solve(targets).evaluate(factor.source)
+
+
+class Slider:
+    """Brings semilandmarks to rest, keeping what the next time may share.
+
+    For use by one thread at a time.
+
+    Attributes
+    ----------
+    slides
+        How often it was really done, for tests and for the curious.
+    """
+
+    def __init__(self) -> None:
+        self._finders: dict[Side, PathFinder] = {}
+        self._last: tuple[SlidingInputs, SlidGroups] | None = None
+        self.slides = 0
+
+    def slide(self, inputs: SlidingInputs) -> SlidGroups:
+        """Return the semilandmarks at rest.
+
+        Raises
+        ------
+        PinwarpError
+            When a mesh is missing, the landmarks cannot carry a surface, or a curve is none; the
+            message says what to do.
+        """
+        if self._last is not None and self._last[0] == inputs:
+            return self._last[1]
+        for side, mesh in ((Side.SOURCE, inputs.mesh), (Side.DESTINATION, inputs.target)):
+            if mesh is None:
+                raise PinwarpError(
+                    f"Semilandmarks slide from bone to bone, and there is no {side.value} mesh: "
+                    "open it first."
+                )
+        rows = {name: row for row, name in enumerate(inputs.names)}
+        found = gathered(
+            inputs.groups,
+            rows,
+            self.finder(Side.SOURCE, inputs.mesh),
+            lambda: self.finder(Side.DESTINATION, inputs.target),
+        )
+        surface = self.finder(Side.DESTINATION, inputs.target).surface
+        slid = slide(inputs.source, inputs.destination, found.semilandmarks, surface)
+        self.slides += 1
+        at_rest = SlidGroups(_by_group(inputs.groups, found, slid), slid, len(inputs.source))
+        self._last = (inputs, at_rest)
+        return at_rest
+
+    def finder(self, side: Side, mesh: Mesh | None) -> PathFinder:
+        """Return what finds ways over a mesh; that of the last one is kept."""
+        assert mesh is not None, "asked for where there is a mesh"
+        kept = self._finders.get(side)
+        if kept is None or kept.surface.mesh is not mesh:
+            kept = self._finders[side] = PathFinder(Surface(mesh))
+        return kept
+
+
+def _by_group(groups: tuple[Group, ...], found: Gathered, slid: Slid) -> tuple[SlidGroup, ...]:
+    several, first = [], 0
+    for group, course, numbers in zip(groups, found.courses, found.numbers, strict=True):
+        own = slice(first, first + len(numbers))
+        several.append(
+            SlidGroup(
+                group,
+                course,
+                numbers,
+                found.semilandmarks.source[own],
+                slid.positions[own],
+                slid.is_freed[own],
+                slid.slid[own],
+            )
+        )
+        first = own.stop
+    return tuple(several)
+
+
+def expected_handles(curve: Curve, spline: Spline, surface: Surface) -> Matrix:
+    """Return (h, 3) where the handles of a curve are on the destination, or are expected there.
+
+    Parameters
+    ----------
+    curve
+        The curve.
+    spline
+        The warp.
+    surface
+        The destination's.
+    """
+    places = surface.closest(spline.evaluate([handle.source for handle in curve.handles]))
+    return np.array(
+        [
+            place if handle.destination is None else handle.destination
+            for handle, place in zip(curve.handles, places.positions, strict=True)
+        ]
+    )
+
+
+def destination_path(curve: Curve, course: Course, spline: Spline, finder: PathFinder) -> Matrix:
+    """Return the (p, 3) way of a curve over the destination: drawn there, or as it is carried.
+
+    Parameters
+    ----------
+    curve, course
+        The curve, and where it runs on the source.
+    spline
+        The warp.
+    finder
+        Of the destination's surface.
+    """
+    if curve.is_drawn:
+        return path_of(curve, finder, Side.DESTINATION).places
+    return finder.surface.closest(spline.evaluate(course.path.places)).positions
