@@ -109,8 +109,7 @@ class Quality:
         Examples
         --------
         >>> from pinwarp.core.landmarks import Landmark
-        >>> from pinwarp.session.warp.sliding import SlidGroups
-        from pinwarp.session.warp.solver import WarpSolver
+        >>> from pinwarp.session.warp.solver import WarpSolver
         >>> places = [(0, 0, 0), (0, 0, 0), (9, 0, 0), (0, 9, 0), (0, 0, 9)]
         >>> ends = [(0, 0, 0), (2, 0, 0), *places[2:]]
         >>> session = Session(landmarks=tuple(map(Landmark, "abcde", places, ends)))
