@@ -22,7 +22,8 @@ from pinwarp.core.spline import solve
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session import edits
 from pinwarp.session.session import Session
-from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+from pinwarp.session.warp.result import WarpInputs
+from pinwarp.session.warp.solver import WarpSolver
 from pinwarp.tps3d import solve_coefficients
 from tests.benchmarks.peers import PEERS
 from tests.benchmarks.shapes import landmark_pairs, surface_points

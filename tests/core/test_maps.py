@@ -21,7 +21,8 @@ from pinwarp.io.meshes import MeshFile
 from pinwarp.session import edits
 from pinwarp.session.judging.survey import Surveyor
 from pinwarp.session.session import Session
-from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+from pinwarp.session.warp.result import WarpInputs
+from pinwarp.session.warp.solver import WarpSolver
 
 SIZE = np.array([30.0, 25.0, 90.0])
 

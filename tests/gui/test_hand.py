@@ -18,7 +18,8 @@ from pinwarp.io.meshes import MeshFile
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.session import Session
-from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+from pinwarp.session.warp.result import WarpInputs
+from pinwarp.session.warp.solver import WarpSolver
 
 SOURCE, DESTINATION = Side
 TETRAHEDRON = Mesh(

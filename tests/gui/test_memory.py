@@ -17,7 +17,8 @@ from pinwarp.io.samples import sample_session
 from pinwarp.session import edits
 from pinwarp.session.judging.quality import Quality
 from pinwarp.session.session import Session
-from pinwarp.session.warp.solver import WarpInputs, WarpResult, WarpSolver
+from pinwarp.session.warp.result import WarpInputs, WarpResult
+from pinwarp.session.warp.solver import WarpSolver
 
 KINDS = (Mesh, Surface, Session, WarpResult, Quality)
 

@@ -15,7 +15,8 @@ from pinwarp.gui.scene.session_scene import MOST_LABELS, session_drawables
 from pinwarp.session.judging.quality import quality_of
 from pinwarp.session.session import Session
 from pinwarp.session.view import Selection, ViewState
-from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+from pinwarp.session.warp.result import WarpInputs
+from pinwarp.session.warp.solver import WarpSolver
 
 NOTHING, USUAL = Selection(), ViewState()
 

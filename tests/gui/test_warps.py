@@ -15,7 +15,7 @@ from pinwarp.io.meshes import MeshFile
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.session import Session
-from pinwarp.session.warp.solver import WarpInputs
+from pinwarp.session.warp.result import WarpInputs
 
 
 class ByHand(QObject):

@@ -28,7 +28,8 @@ from pinwarp.session.guide import with_template
 from pinwarp.session.naming import names_by_pattern
 from pinwarp.session.outputs.exports import warped_mesh
 from pinwarp.session.session import Session, from_record, to_record
-from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+from pinwarp.session.warp.result import WarpInputs
+from pinwarp.session.warp.solver import WarpSolver
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
 

@@ -8,7 +8,8 @@ import pytest
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.session.session import Session
 from pinwarp.session.warp.ghost import ghost_of
-from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+from pinwarp.session.warp.result import WarpInputs
+from pinwarp.session.warp.solver import WarpSolver
 
 
 def test_both_sides_of_a_landmark_are_expected_where_they_belong_and_equally_surely():

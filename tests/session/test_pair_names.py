@@ -9,7 +9,7 @@ from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.session import edits
 from pinwarp.session.session import Session
 from pinwarp.session.warp.pair_names import pair_names
-from pinwarp.session.warp.solver import WarpInputs
+from pinwarp.session.warp.result import WarpInputs
 
 
 @pytest.fixture

@@ -17,7 +17,8 @@ from pinwarp.core.spline import PenaltyConvention, solve
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session import edits
 from pinwarp.session.session import Session
-from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+from pinwarp.session.warp.result import WarpInputs
+from pinwarp.session.warp.solver import WarpSolver
 
 
 @pytest.fixture

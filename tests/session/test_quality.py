@@ -18,7 +18,8 @@ from pinwarp.core.spline import PenaltyConvention, solve
 from pinwarp.session import edits
 from pinwarp.session.judging.quality import quality_of
 from pinwarp.session.session import Session
-from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+from pinwarp.session.warp.result import WarpInputs
+from pinwarp.session.warp.solver import WarpSolver
 
 
 def session_of(source, destination, names=None, **changes):

@@ -27,7 +27,8 @@ from pinwarp.session.judging.survey import Surveyor
 from pinwarp.session.judging.warp_figures import figures_table
 from pinwarp.session.outputs.exports import warped_mesh, warped_passengers
 from pinwarp.session.session import Session
-from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+from pinwarp.session.warp.result import WarpInputs
+from pinwarp.session.warp.solver import WarpSolver
 
 SCALES = [1e-320, 1e-300, 1e-160, 1e-40, 1e-22, 1.0, 1e18, 1e20, 1e37, 1e39, 1e100, 1e149, 1e300]
 BONE = Mesh(bone().vertices / 50, bone().faces)

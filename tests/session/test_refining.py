@@ -31,8 +31,9 @@ from pinwarp.session.outputs.script import script_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.refined import is_out_of_date, refinement_in_use, warp_in_words
 from pinwarp.session.warp.refining import RefinementOptions, refined_session, verified
+from pinwarp.session.warp.result import WarpInputs
 from pinwarp.session.warp.solved import solved
-from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+from pinwarp.session.warp.solver import WarpSolver
 
 COARSE = RefinementOptions(smallest_feature=30.0)
 

@@ -10,8 +10,9 @@ from pinwarp.io.samples import sample_session
 from pinwarp.session import edits
 from pinwarp.session.judging.report import report_of
 from pinwarp.session.keeping.files import read_session
+from pinwarp.session.warp.result import WarpInputs
 from pinwarp.session.warp.solved import solved
-from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+from pinwarp.session.warp.solver import WarpSolver
 
 MADE = datetime(2026, 11, 22, 14, 3)
 

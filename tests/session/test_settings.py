@@ -27,9 +27,10 @@ from pinwarp.session.outputs.exports import session_coefficients, warped_mesh
 from pinwarp.session.outputs.script import script_of
 from pinwarp.session.session import Session
 from pinwarp.session.study.subject import Task, made_from
+from pinwarp.session.warp.result import WarpInputs
 from pinwarp.session.warp.setting_words import settings_in_words
 from pinwarp.session.warp.solved import solved
-from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+from pinwarp.session.warp.solver import WarpSolver
 
 FIELDS = [field.name for field in dataclasses.fields(WarpSettings)]
 OTHERS = {

@@ -16,7 +16,8 @@ from pinwarp.session.editor import Editor
 from pinwarp.session.judging.survey import Surveyor
 from pinwarp.session.keeping.journal import WORK, Journal
 from pinwarp.session.session import Session, to_record
-from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+from pinwarp.session.warp.result import WarpInputs
+from pinwarp.session.warp.solver import WarpSolver
 
 
 @pytest.fixture

@@ -34,8 +34,9 @@ from pinwarp.session.outputs.exports import (
 from pinwarp.session.session import Session
 from pinwarp.session.study.batch import plan
 from pinwarp.session.study.subject import warp_subject
+from pinwarp.session.warp.result import WarpInputs
 from pinwarp.session.warp.solved import NO_PAIR, solved
-from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+from pinwarp.session.warp.solver import WarpSolver
 
 MADE = datetime(2026, 11, 22, 14, 3)
 

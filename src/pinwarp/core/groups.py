@@ -45,6 +45,12 @@ class Handle:
     destination: Position | None = None
     landmark: str = ""
 
+    def __post_init__(self) -> None:
+        # Numbers of numpy are written, and hashed, otherwise.
+        object.__setattr__(self, "source", as_position(self.source))
+        if self.destination is not None:
+            object.__setattr__(self, "destination", as_position(self.destination))
+
     def position(self, side: Side) -> Position | None:
         """Return the position on one side, or None."""
         return self.source if side is Side.SOURCE else self.destination
@@ -66,6 +72,8 @@ class Curve:
         How many points stand along it, at even distances.
     excluded
         Which points, by number, take no part.
+    drawn
+        Whether somebody drew it on the destination, or accepted it there.
 
     Raises
     ------
@@ -85,6 +93,7 @@ class Curve:
     is_closed: bool = False
     count: int = 20
     excluded: frozenset[int] = frozenset()
+    drawn: bool = False
 
     def __post_init__(self) -> None:
         _check_group(self.name, self.count)
@@ -100,8 +109,8 @@ class Curve:
 
     @property
     def is_drawn(self) -> bool:
-        """Whether somebody drew it on the destination too; else it slides by its tangents."""
-        return all(handle.destination is not None for handle in self.handles)
+        """Whether it is drawn on the destination, all of it; else it slides by its tangents."""
+        return self.drawn and all(handle.destination is not None for handle in self.handles)
 
     def places(self, side: Side) -> tuple[Position, ...]:
         """Return where its handles are on one side; those that are not there are left out."""
@@ -140,6 +149,8 @@ class Patch:
 
     def __post_init__(self) -> None:
         _check_group(self.name, self.count)
+        if self.inside is not None:
+            object.__setattr__(self, "inside", as_position(self.inside))
 
     @property
     def count(self) -> int:

@@ -69,6 +69,8 @@ def group_lines(groups: Sequence[Group], slid: SlidRecord | None) -> Iterator[tu
     for group in groups:
         if isinstance(group, Curve):
             words = [f"closed={int(group.is_closed)}", f"points={group.count}"]
+            if group.drawn:
+                words.append("destination=drawn")
             if group.excluded:
                 words.append(f"excluded={'/'.join(map(str, sorted(group.excluded)))}")
         else:
@@ -251,7 +253,8 @@ def _curve(name: str, count: int, values: Mapping[str, str], rows: Sequence[Grou
     handles = tuple(Handle(_placed(row), row.destination, row.note) for row in rows)
     excluded = frozenset(map(int, re.findall("[0-9]{1,7}", values.get("excluded", ""))))
     try:
-        return Curve(name, handles, values["closed"] == "1", count, excluded)
+        drawn = values.get("destination") == "drawn"
+        return Curve(name, handles, values["closed"] == "1", count, excluded, drawn)
     except LandmarkError as error:
         raise ValueError(str(error)) from None
 

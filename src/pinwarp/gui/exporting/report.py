@@ -19,8 +19,8 @@ from pinwarp.session.editor import Editor
 from pinwarp.session.judging.quality import Quality
 from pinwarp.session.judging.report import report_of
 from pinwarp.session.warp.refined import warp_in_words
+from pinwarp.session.warp.result import WarpResult
 from pinwarp.session.warp.solved import solved
-from pinwarp.session.warp.solver import WarpResult
 
 
 class ReportExport(Capability):

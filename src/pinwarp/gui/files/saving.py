@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 from pinwarp.core.errors import words_of
@@ -18,7 +19,7 @@ from pinwarp.io.meshes import MeshFile
 from pinwarp.io.reading import hash_of
 from pinwarp.io.session_file import write_session
 from pinwarp.session.editor import Editor
-from pinwarp.session.session import to_record
+from pinwarp.session.session import Session, to_record
 
 
 class Saving(Capability):
@@ -32,10 +33,19 @@ class Saving(Capability):
         Writes, asks and tells.
     recent
         Remembers sessions.
+    rested
+        Puts into a session where its semilandmarks rest.
     """
 
-    def __init__(self, editor: Editor, tasks: FileTasks[FileDialogs], recent: RecentFiles) -> None:
+    def __init__(
+        self,
+        editor: Editor,
+        tasks: FileTasks[FileDialogs],
+        recent: RecentFiles,
+        rested: Callable[[Session], Session],
+    ) -> None:
         self._editor = editor
+        self._rested = rested
         self._tasks = tasks
         self._recent = recent
         self.actions = (
@@ -99,7 +109,7 @@ class Saving(Capability):
                 return False
 
     def _save_to(self, path: Path) -> bool:
-        record = to_record(self._editor.committed)
+        record = to_record(self._rested(self._editor.committed))
         unkept: list[OSError | None] = []
 
         def write() -> None:

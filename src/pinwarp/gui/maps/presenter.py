@@ -41,7 +41,7 @@ from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.session import Session
 from pinwarp.session.signals import isolated
 from pinwarp.session.view import ViewState
-from pinwarp.session.warp.solver import WarpResult
+from pinwarp.session.warp.result import WarpResult
 
 MAP_ACTIONS = {kind: f"map_{kind.name.lower() if kind else 'none'}" for kind in (None, *MapKind)}
 _ACTIONS = {

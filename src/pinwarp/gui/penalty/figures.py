@@ -14,7 +14,7 @@ from pinwarp.core.spline import PenaltyConvention
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.lengths import format_length
 from pinwarp.session.session import Session
-from pinwarp.session.warp.solver import WarpResult
+from pinwarp.session.warp.result import WarpResult
 
 NO_FIGURE = "–"
 

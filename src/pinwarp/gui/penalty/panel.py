@@ -38,7 +38,7 @@ from pinwarp.session.edits import UNITS
 from pinwarp.session.judging.quality import LEAST_PAIRS, Quality, penalty_advice
 from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.session import Session
-from pinwarp.session.warp.solver import WarpResult
+from pinwarp.session.warp.result import WarpResult
 
 _CONVENTIONS = {
     PenaltyConvention.REGULARISING: "Regularising",

@@ -34,7 +34,7 @@ from qtpy.QtWidgets import (
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.lengths import format_length, format_number
-from pinwarp.session.warp.solver import WarpInputs
+from pinwarp.session.warp.result import WarpInputs
 
 # The largest picture, in logical pixels.
 PICTURE = QSize(150, 96)

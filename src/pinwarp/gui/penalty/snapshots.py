@@ -22,7 +22,7 @@ from pinwarp.gui.warp.warps import Warps
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.session import Session
-from pinwarp.session.warp.solver import WarpInputs, WarpResult
+from pinwarp.session.warp.result import WarpInputs, WarpResult
 
 MOST = 12
 # Flexibilities of a sweep.

@@ -16,7 +16,7 @@ from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.quality import Quality
 from pinwarp.session.view import ViewState
-from pinwarp.session.warp.solver import WarpResult
+from pinwarp.session.warp.result import WarpResult
 
 
 class PenaltyTuning(Capability):

@@ -27,7 +27,8 @@ from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.session import Session
 from pinwarp.session.view import Selection, ViewState
 from pinwarp.session.warp.pair_names import pair_names
-from pinwarp.session.warp.solver import WarpResult, is_rounding
+from pinwarp.session.warp.result import WarpResult
+from pinwarp.session.warp.solver import is_rounding
 
 # With more of them selected, their labels would hide the bone.
 MOST_LABELS = 12

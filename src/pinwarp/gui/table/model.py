@@ -21,7 +21,7 @@ from pinwarp.session.judging.quality import NamedFinding, Quality
 from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.session import Session
 from pinwarp.session.warp.pair_names import pair_names
-from pinwarp.session.warp.solver import WarpInputs, WarpResult
+from pinwarp.session.warp.result import WarpInputs, WarpResult
 
 # The role under which a cell says how large its number is beside the largest of its column.
 SHARE = Qt.ItemDataRole.UserRole

@@ -7,7 +7,7 @@ from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.gui.warp.warps import Warps
 from pinwarp.session.judging.quality import Quality, quality_of
 from pinwarp.session.signals import isolated
-from pinwarp.session.warp.solver import WarpResult
+from pinwarp.session.warp.result import WarpResult
 
 
 class QualityPresenter(Capability):

@@ -22,7 +22,9 @@ from pinwarp.session.editor import Editor
 from pinwarp.session.judging.quality import Quality, quality_of
 from pinwarp.session.session import Session
 from pinwarp.session.signals import isolated
-from pinwarp.session.warp.solver import EAGER_MODES, WarpInputs, WarpResult, WarpSolver
+from pinwarp.session.warp.rested import with_rest
+from pinwarp.session.warp.result import WarpInputs, WarpResult
+from pinwarp.session.warp.solver import EAGER_MODES, WarpSolver
 
 # A table of figures that run is not read: while something moves it is renewed this often (s).
 TABLE_PAUSE = 0.25
@@ -117,6 +119,19 @@ class Warps(Capability):
         asked, previewed = self._asked
         current = WarpInputs.of(self._editor.session, asked.stand_in)
         return asked == current and previewed == self._editor.is_previewing
+
+    def rested(self, session: Session) -> Session:
+        """Return a session that knows where its semilandmarks rest, as far as that is known.
+
+        What has not come to rest yet does so when it is asked for again.
+        """
+        if not session.groups:
+            return session
+        result = self.result
+        known = result is not None and result.inputs == WarpInputs.of(
+            session, result.inputs.stand_in
+        )
+        return with_rest(session, result.semilandmarks if result is not None and known else None)
 
     def drawables(self, side: Side) -> Iterator[Drawable]:
         """Return the warped source over the destination."""

@@ -108,7 +108,7 @@ class Parts:
             editor, self.warps, self.quality, scenes, destination, say, frame
         )
         self.penalty = PenaltyTuning(editor, self.warps, self.quality, self.snapshots)
-        self.saving = Saving(editor, tasks, recent)
+        self.saving = Saving(editor, tasks, recent, self.warps.rested)
         self.recovery = Recovery(editor, tasks, self.saving, meshes, state_folder, frame)
         self.imports = LandmarkImports(editor, tasks)
         self.documents = Documents(

@@ -189,7 +189,7 @@ def accept_curve(session: Session, name: str, places: Sequence[Position]) -> Ses
             landmarks[handle.landmark] = landmark.placed(Side.DESTINATION, there)
         handles.append(replace(handle, destination=there))
     placed = replace(session, landmarks=tuple(landmarks.values()))
-    return _changed(placed, replace(curve, handles=tuple(handles)))
+    return _changed(placed, replace(curve, handles=tuple(handles), drawn=True))
 
 
 def undraw_curve(session: Session, name: str) -> Session:
@@ -198,7 +198,7 @@ def undraw_curve(session: Session, name: str) -> Session:
     handles = tuple(
         handle if handle.landmark else replace(handle, destination=None) for handle in curve.handles
     )
-    return _changed(session, replace(curve, handles=handles))
+    return _changed(session, replace(curve, handles=handles, drawn=False))
 
 
 def exclude_points(

@@ -27,8 +27,8 @@ from pinwarp.core.spline import Spline, solve
 from pinwarp.core.suspects import is_mirrored, suspects, swapped_pairs
 from pinwarp.session.session import Session
 from pinwarp.session.warp.pair_names import pair_names
+from pinwarp.session.warp.result import WarpInputs, WarpResult
 from pinwarp.session.warp.sliding import SlidGroups
-from pinwarp.session.warp.solver import WarpInputs, WarpResult
 
 Matrix = NDArray[np.float64]
 

@@ -20,9 +20,9 @@ from pinwarp.io.report import Report, ReportRow
 from pinwarp.session.judging.quality import Quality, quality_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date, refinement_in_use
+from pinwarp.session.warp.result import WarpResult
 from pinwarp.session.warp.setting_words import settings_in_words
 from pinwarp.session.warp.solved import SolvedWarp
-from pinwarp.session.warp.solver import WarpResult
 from pinwarp.version import __version__
 
 LEFT_OUT_COLOUR, RESIDUAL_COLOUR, SUGGESTED_COLOUR = "#0072B2", "#8b919a", "#009E73"

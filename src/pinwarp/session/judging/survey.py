@@ -25,7 +25,7 @@ from pinwarp.core.prediction import prediction_of
 from pinwarp.core.spline import Spline
 from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.session.judging.quality import LEAST_PAIRS
-from pinwarp.session.warp.solver import WarpResult
+from pinwarp.session.warp.result import WarpResult
 
 FEW_PAIRS = (
     "The uncertainty needs five pairs that do not lie in one plane, since it is told from how "
@@ -109,7 +109,7 @@ class Surveyor:
 
         Examples
         --------
-        >>> from pinwarp.session.warp.solver import WarpInputs
+        >>> from pinwarp.session.warp.result import WarpInputs
         >>> from pinwarp.session.session import Session
         >>> result = WarpResult(WarpInputs.of(Session()))
         >>> Surveyor().survey(result, None, MapKind.VOLUME).missing

@@ -94,7 +94,8 @@ def warp_figures(quality: Quality, unit: str) -> tuple[FigureRow, ...]:
     --------
     >>> from pinwarp.session import edits
     >>> from pinwarp.session.judging.quality import quality_of
-    >>> from pinwarp.session.warp.solver import WarpInputs, WarpSolver
+    >>> from pinwarp.session.warp.result import WarpInputs
+    >>> from pinwarp.session.warp.solver import WarpSolver
     >>> from pinwarp.session.session import Session
     >>> from pinwarp.core.landmarks import Landmark
     >>> corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]

@@ -13,6 +13,9 @@ from pinwarp.io.mesh_search import find_mesh
 from pinwarp.io.meshes import MeshFile, read_mesh
 from pinwarp.io.session_file import MeshReference
 from pinwarp.session.session import Session, as_seen, from_record, to_record
+from pinwarp.session.warp.rested import with_rest
+from pinwarp.session.warp.result import WarpInputs
+from pinwarp.session.warp.solver import WarpSolver
 
 CHANGED = "It has changed since the landmarks were placed on it."
 
@@ -57,7 +60,7 @@ def write_session(path: str | Path, session: Session) -> None:
     path
         The file, named ``NAME.pinwarp.csv`` by custom.
     session
-        What to write.
+        What to write; where its semilandmarks rest is written, too.
 
     Raises
     ------
@@ -76,6 +79,10 @@ def write_session(path: str | Path, session: Session) -> None:
     ...     read_session(path).settings.penalty
     2.5
     """
+    if session.groups:
+        session = with_rest(
+            session, WarpSolver().solve_landmarks(WarpInputs.of(session)).semilandmarks
+        )
     session_file.write_session(path, to_record(session))
 
 

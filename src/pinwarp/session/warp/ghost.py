@@ -10,7 +10,7 @@ from pinwarp.core.errors import RangeError
 from pinwarp.core.landmarks import Landmark, Position, Side, as_position
 from pinwarp.core.prediction import inverse_warp, prediction_of
 from pinwarp.core.spline import PenaltyConvention
-from pinwarp.session.warp.solver import WarpResult
+from pinwarp.session.warp.result import WarpResult
 
 # With fewer pairs a prediction says more about the pairs than about the bone.
 FEWEST_PAIRS = 3

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pinwarp.core.landmarks import Position
 from pinwarp.session.session import Session
-from pinwarp.session.warp.solver import WarpInputs
+from pinwarp.session.warp.result import WarpInputs
 
 Places = tuple[Position | None, Position | None]
 

@@ -13,16 +13,18 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.core.conditions import ConditionFactor, factorise_conditions
+from pinwarp.core.conditions import ConditionFactor, factorise_conditions, held
 from pinwarp.core.curves import PathFinder
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.factor import SourceFactor, factorise
-from pinwarp.core.groups import Course, Curve, Gathered, Group, gathered, path_of
+from pinwarp.core.groups import Course, Curve, Group, gathered, path_of
 from pinwarp.core.landmarks import Position, Side
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.sliding import Slid, slide
-from pinwarp.core.spline import Spline
+from pinwarp.core.spline import Spline, solve
 from pinwarp.core.surface import Surface
+from pinwarp.io.group_record import SlidRecord
+from pinwarp.session.session import Session
 
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -38,6 +40,29 @@ class SlidingInputs:
     groups: tuple[Group, ...]
     mesh: Mesh | None
     target: Mesh | None
+    kept: SlidRecord | None = None
+
+    @classmethod
+    def of(cls, session: Session, kept: SlidRecord | None) -> SlidingInputs:
+        """Collect the inputs from a session.
+
+        Parameters
+        ----------
+        session
+            What is to be warped.
+        kept
+            Where the points rested before, for want of a mesh.
+        """
+        pairs = session.pairs
+        return cls(
+            tuple(pair.source for pair in pairs if pair.source is not None),
+            tuple(pair.destination for pair in pairs if pair.destination is not None),
+            tuple(pair.name for pair in pairs),
+            session.groups,
+            session.mesh(Side.SOURCE),
+            session.mesh(Side.DESTINATION),
+            kept,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +74,7 @@ class SlidGroup:
     group
         The curve or patch.
     course
-        Where a curve runs on the source; None for a patch.
+        Where a curve runs on the source; None for a patch, and without its mesh.
     numbers : (m,) int64
         Which of its points took part.
     source, positions : (m, 3) float64
@@ -144,14 +169,14 @@ class SlidGroups:
             surface, which takes a hundredth of a slide.
         """
         n = self.landmarks
-        factor, held = self.factor, self._held
+        factor, condition_factor = self.factor, self._held
         if not np.array_equal(factor.source[:n], source):
             places = np.vstack([source, factor.source[n:]])
             factor = factorise(places)
-            held = factorise_conditions(places, self.slid.conditions)
+            condition_factor = factorise_conditions(places, self.slid.conditions)
         targets = self.targets.copy()
         targets[:n] = destination
-        return factor, held.solve(targets).evaluate(factor.source)
+        return factor, condition_factor.solve(targets).evaluate(factor.source)
 
 
 class Slider:
@@ -182,6 +207,8 @@ class Slider:
         if self._last is not None and self._last[0] == inputs:
             return self._last[1]
         for side, mesh in ((Side.SOURCE, inputs.mesh), (Side.DESTINATION, inputs.target)):
+            if mesh is None and inputs.kept is not None:
+                return self._found(inputs, kept_at_rest(inputs, inputs.kept))
             if mesh is None:
                 raise PinwarpError(
                     f"Semilandmarks slide from bone to bone, and there is no {side.value} mesh: "
@@ -197,7 +224,12 @@ class Slider:
         surface = self.finder(Side.DESTINATION, inputs.target).surface
         slid = slide(inputs.source, inputs.destination, found.semilandmarks, surface)
         self.slides += 1
-        at_rest = SlidGroups(_by_group(inputs.groups, found, slid), slid, len(inputs.source))
+        points = found.semilandmarks.source
+        groups = _by_group(inputs.groups, found.courses, found.numbers, points, slid)
+        at_rest = SlidGroups(groups, slid, len(inputs.source))
+        return self._found(inputs, at_rest)
+
+    def _found(self, inputs: SlidingInputs, at_rest: SlidGroups) -> SlidGroups:
         self._last = (inputs, at_rest)
         return at_rest
 
@@ -210,16 +242,58 @@ class Slider:
         return kept
 
 
-def _by_group(groups: tuple[Group, ...], found: Gathered, slid: Slid) -> tuple[SlidGroup, ...]:
+def kept_at_rest(inputs: SlidingInputs, kept: SlidRecord) -> SlidGroups:
+    """Return semilandmarks where they rested before: without its mesh nothing slides.
+
+    Raises
+    ------
+    PinwarpError
+        When the warp of these cannot be solved for.
+    """
+    landmarks = len(inputs.source)
+    source = np.array(kept.source, np.float64).reshape(-1, 3)
+    is_freed = np.array([place is None for place in kept.destination], np.bool_)
+    aims = [place or (0.0, 0.0, 0.0) for place in kept.destination]
+    positions = np.array(aims, np.float64).reshape(-1, 3)
+    used = np.concatenate([np.arange(landmarks), landmarks + np.flatnonzero(~is_freed)])
+    places = np.vstack([np.array(inputs.source), source])[used]
+    spline = solve(factorise(places), np.vstack([np.array(inputs.destination), positions])[used])
+    positions[is_freed] = spline.evaluate(source[is_freed])
+    slid = Slid(
+        positions=positions,
+        is_freed=is_freed,
+        slid=np.zeros(len(source)),
+        energies=(),
+        converged=True,
+        # No plane is known: they follow the landmarks meanwhile.
+        conditions=held(np.arange(landmarks)),
+        used=used,
+        spline=spline,
+    )
+    numbers = tuple(
+        np.array([n for n in range(group.count) if n not in group.excluded], np.int64)
+        for group in inputs.groups
+    )
+    courses = (None,) * len(inputs.groups)
+    return SlidGroups(_by_group(inputs.groups, courses, numbers, source, slid), slid, landmarks)
+
+
+def _by_group(
+    groups: tuple[Group, ...],
+    courses: tuple[Course | None, ...],
+    numbers_of: tuple[NDArray[np.int64], ...],
+    source: Matrix,
+    slid: Slid,
+) -> tuple[SlidGroup, ...]:
     several, first = [], 0
-    for group, course, numbers in zip(groups, found.courses, found.numbers, strict=True):
+    for group, course, numbers in zip(groups, courses, numbers_of, strict=True):
         own = slice(first, first + len(numbers))
         several.append(
             SlidGroup(
                 group,
                 course,
                 numbers,
-                found.semilandmarks.source[own],
+                source[own],
                 slid.positions[own],
                 slid.is_freed[own],
                 slid.slid[own],

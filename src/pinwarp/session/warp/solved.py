@@ -22,7 +22,8 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import Spline
 from pinwarp.core.surface_distance import SurfaceComparison, SurfaceIndex, compare_surfaces
 from pinwarp.session.session import Session
-from pinwarp.session.warp.solver import WarpInputs, WarpResult, WarpSolver
+from pinwarp.session.warp.result import WarpInputs, WarpResult
+from pinwarp.session.warp.solver import WarpSolver
 
 Matrix = NDArray[np.float64]
 

@@ -1,0 +1,60 @@
+"""Where the semilandmarks of a session rest, kept with it for when a mesh is missing."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import replace
+
+from pinwarp.core.landmarks import Position, Side, as_position
+from pinwarp.io.group_record import SlidRecord
+from pinwarp.session.session import Session
+from pinwarp.session.warp.sliding import SlidGroups
+
+
+def rest_in_use(session: Session) -> SlidRecord | None:
+    """Return where the semilandmarks were at rest, where that belongs to what the session is now.
+
+    Examples
+    --------
+    >>> rest_in_use(Session()) is None
+    True
+    """
+    slid = session.slid
+    return slid if slid is not None and slid.inputs == _inputs_of(session) else None
+
+
+def with_rest(session: Session, at_rest: SlidGroups | None) -> Session:
+    """Return a session that knows where its semilandmarks are at rest.
+
+    Parameters
+    ----------
+    session
+        What is to be written.
+    at_rest
+        Of its warp; None where they cannot slide, as without a mesh: what it knew of old is then
+        kept as long as it belongs to it.
+    """
+    if at_rest is None:
+        return replace(session, slid=rest_in_use(session))
+    source: list[Position] = []
+    destination: list[Position | None] = []
+    for group in at_rest.groups:
+        source += map(as_position, group.source)
+        destination += [
+            None if freed else as_position(place)
+            for freed, place in zip(group.is_freed, group.positions, strict=True)
+        ]
+    record = SlidRecord(tuple(source), tuple(destination), _inputs_of(session))
+    return replace(session, slid=record)
+
+
+def _inputs_of(session: Session) -> str:
+    """Return a hash of all that the rest of semilandmarks follows from."""
+    meshes = (session.mesh_file(side) for side in Side)
+    parts = (
+        tuple((pair.name, pair.source, pair.destination) for pair in session.pairs),
+        # Sets have no order of their own.
+        tuple((replace(x, excluded=frozenset()), sorted(x.excluded)) for x in session.groups),
+        tuple(None if x is None else (x.sha256, x.mirrored, float(x.scaled)) for x in meshes),
+    )
+    return f"sha256:{hashlib.sha256(repr(parts).encode()).hexdigest()[:32]}"
