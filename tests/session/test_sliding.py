@@ -246,3 +246,17 @@ def test_a_refined_session_warps_as_it_was_refined(grouped):
     assert rest_of(refined).semilandmarks is None
     alone = rest_of(replace(refined, groups=()))
     np.testing.assert_array_equal(rest_of(refined).vertices, alone.vertices)
+
+
+def test_points_at_one_place_take_part_once(grouped, finders, tmp_path):
+    """Two curves that cross, and a curve through a landmark that it is not anchored to."""
+    curve = grouped.group("curve_1")
+    twice, _ = edits.add_curve(grouped, curve.handles, finders[SOURCE], count=7)
+    through = [Handle(handle.source) for handle in curve.handles]
+    twice, _ = edits.add_curve(twice, through, finders[SOURCE], count=3)
+    result = rest_of(twice)
+    assert result.not_sliding is None
+    assert [len(group.positions) for group in result.semilandmarks.groups] == [80, 7, 0, 0]
+    path = tmp_path / "twice.pinwarp.csv"
+    write_session(path, twice)
+    assert read_session(path).groups == twice.groups

@@ -43,10 +43,10 @@ class SessionRecord:
         The meshes, or None where none was chosen yet.
     settings
         How the warp is solved and applied.
-    groups
-        Curves and patches of semilandmarks; they make the file one of version 2.
     refinement
         A refined warp, or None; it makes the file one of version 2, too.
+    groups
+        Curves and patches of semilandmarks; they make the file one of version 2.
     slid
         Where the semilandmarks came to rest, or None.
     unit
@@ -60,8 +60,8 @@ class SessionRecord:
     source_mesh: MeshReference | None = None
     destination_mesh: MeshReference | None = None
     settings: WarpSettings = USUAL_SETTINGS
-    groups: tuple[Group, ...] = ()
     refinement: RefinementRecord | None = None
+    groups: tuple[Group, ...] = ()
     slid: SlidRecord | None = None
     unit: str = "mm"
     unknown: tuple[tuple[str, str], ...] = ()

@@ -26,14 +26,14 @@ class Session:
         loses nothing), or None.
     landmarks
         In the order of the table; names are unique.
-    groups
-        Curves and patches of semilandmarks, in the order of their list; names are unique. A
-        handle of a curve that is anchored to a landmark is always where that is.
     settings
         How the warp is solved and applied.
     refinement
         The warp refined to the whole surface, where somebody asked for that. It counts only while
         what it was made from is unchanged; see :mod:`pinwarp.session.warp.refined`.
+    groups
+        Curves and patches of semilandmarks, in the order of their list; names are unique. A
+        handle of a curve that is anchored to a landmark is always where that is.
     slid
         Where the semilandmarks had come to rest when the session was saved. Where both meshes
         are there they slide anew; see :mod:`pinwarp.session.warp.sliding`.
@@ -53,9 +53,9 @@ class Session:
     source: MeshFile | MeshReference | None = None
     destination: MeshFile | MeshReference | None = None
     landmarks: tuple[Landmark, ...] = ()
-    groups: tuple[Group, ...] = ()
     settings: WarpSettings = USUAL_SETTINGS
     refinement: RefinementRecord | None = None
+    groups: tuple[Group, ...] = ()
     slid: SlidRecord | None = None
     unit: str = "mm"
     unknown: tuple[tuple[str, str], ...] = ()

@@ -7,14 +7,8 @@ from dataclasses import replace
 
 from pinwarp.core.curves import PathFinder
 from pinwarp.core.errors import LandmarkError
-from pinwarp.core.groups import (
-    Curve,
-    Group,
-    Handle,
-    Patch,
-    course_of,
-    with_points_over,
-)
+from pinwarp.core.gathering import course_of, with_points_over
+from pinwarp.core.groups import Curve, Group, Handle, Patch
 from pinwarp.core.landmarks import Landmark, Position, Side
 from pinwarp.session.session import Session
 

@@ -39,11 +39,17 @@ def with_rest(session: Session, at_rest: SlidGroups | None) -> Session:
     source: list[Position] = []
     destination: list[Position | None] = []
     for group in at_rest.groups:
-        source += map(as_position, group.source)
-        destination += [
-            None if freed else as_position(place)
-            for freed, place in zip(group.is_freed, group.positions, strict=True)
-        ]
+        rest = {
+            number: None if freed else as_position(place)
+            for number, freed, place in zip(
+                group.numbers.tolist(), group.is_freed, group.positions, strict=True
+            )
+        }
+        points = group.points
+        # One at the place of another took no part.
+        wanted = [n for n in range(group.group.count) if n not in group.group.excluded]
+        source += [points[n] for n in wanted]
+        destination += [rest.get(n) for n in wanted]
     record = SlidRecord(tuple(source), tuple(destination), _inputs_of(session))
     return replace(session, slid=record)
 

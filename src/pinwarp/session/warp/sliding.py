@@ -17,8 +17,9 @@ from pinwarp.core.conditions import ConditionFactor, factorise_conditions, held
 from pinwarp.core.curves import PathFinder
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.factor import SourceFactor, factorise
-from pinwarp.core.groups import Course, Curve, Group, gathered, path_of
-from pinwarp.core.landmarks import Position, Side
+from pinwarp.core.gathering import Course, gathered, path_of
+from pinwarp.core.groups import Curve, Group, Patch
+from pinwarp.core.landmarks import Position, Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.sliding import Slid, slide
 from pinwarp.core.spline import Spline, solve
@@ -92,6 +93,15 @@ class SlidGroup:
     positions: Matrix
     is_freed: Mask
     slid: Matrix
+
+    @property
+    def points(self) -> tuple[Position, ...]:
+        """All points on the source, those that take no part among them."""
+        if isinstance(self.group, Patch):
+            return self.group.points
+        if self.course is not None:
+            return self.course.points
+        return tuple(map(as_position, self.source))
 
     @property
     def freed(self) -> int:
@@ -214,10 +224,9 @@ class Slider:
                     f"Semilandmarks slide from bone to bone, and there is no {side.value} mesh: "
                     "open it first."
                 )
-        rows = {name: row for row, name in enumerate(inputs.names)}
         found = gathered(
             inputs.groups,
-            rows,
+            dict(zip(inputs.names, inputs.source, strict=True)),
             self.finder(Side.SOURCE, inputs.mesh),
             lambda: self.finder(Side.DESTINATION, inputs.target),
         )
