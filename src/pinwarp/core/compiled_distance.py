@@ -120,3 +120,52 @@ def closest_triangles(boxes, triangles, places, out, squares):
                 waiting += 1
         out[i] = closest
         squares[i] = best
+
+
+@_compile
+def closest_positions(triangles, rows, places, out):
+    """Write the position closest to each place in a triangle that is known.
+
+    Parameters
+    ----------
+    triangles
+        (t, 12), see :func:`_to_triangle`.
+    rows, places
+        (m,) which of them, and (m, 3).
+    out
+        (m, 3).
+    """
+    edges = np.empty((3, 6))
+    for i in range(len(places)):
+        row = triangles[rows[i]]
+        d = places[i] - row[:3]
+        u, v = row[3:6], row[6:9]
+        nx, ny, nz = row[9], row[10], row[11]
+        s = (d[1] * v[2] - d[2] * v[1]) * nx
+        s += (d[2] * v[0] - d[0] * v[2]) * ny + (d[0] * v[1] - d[1] * v[0]) * nz
+        t = (u[1] * d[2] - u[2] * d[1]) * nx
+        t += (u[2] * d[0] - u[0] * d[2]) * ny + (u[0] * d[1] - u[1] * d[0]) * nz
+        # All false for a triangle without area, whose normal is NaN.
+        if s >= 0 and t >= 0 and s + t <= 1:
+            for j in range(3):
+                out[i, j] = row[j] + s * u[j] + t * v[j]
+            continue
+        # Where each edge begins, and how it goes on.
+        for j in range(3):
+            edges[0, j], edges[0, 3 + j] = 0.0, u[j]
+            edges[1, j], edges[1, 3 + j] = 0.0, v[j]
+            edges[2, j], edges[2, 3 + j] = u[j], v[j] - u[j]
+        best = np.inf
+        for edge in edges:
+            length, along = 0.0, 0.0
+            for j in range(3):
+                length += edge[3 + j] * edge[3 + j]
+                along += (d[j] - edge[j]) * edge[3 + j]
+            share = min(max(along / length, 0.0), 1.0) if length > 0 else 0.0
+            square = 0.0
+            for j in range(3):
+                square += (d[j] - edge[j] - share * edge[3 + j]) ** 2
+            if square < best:
+                best = square
+                for j in range(3):
+                    out[i, j] = row[j] + edge[j] + share * edge[3 + j]

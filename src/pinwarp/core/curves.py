@@ -23,7 +23,7 @@ FINENESS = 32
 SHORTENINGS = 60
 EVEN_AGAIN = 10
 # Dijkstra looks no further than so many times the straight line, before it looks everywhere.
-DETOUR = 4.0
+DETOURS = (1.5, 4.0)
 # Points along a path keep this share of their mean spacing apart.
 LEAST_SPACING = 0.1
 
@@ -143,13 +143,15 @@ class PathFinder:
         self.surface = surface
         faces, vertices = surface.welded, surface.mesh.vertices
         self._used = np.unique(faces)
-        edges = np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)
-        edges = np.unique(np.sort(edges, axis=1), axis=0)
-        edges = edges[edges[:, 0] != edges[:, 1]]
-        lengths = np.linalg.norm(vertices[edges[:, 0]] - vertices[edges[:, 1]], axis=1)
-        self._graph: csr_array = coo_array(
-            (lengths, (edges[:, 0], edges[:, 1])), shape=(len(vertices),) * 2
-        ).tocsr()
+        ends = faces.ravel(), faces[:, [1, 2, 0]].ravel()
+        is_edge = ends[0] != ends[1]
+        rows, columns = (np.concatenate(pair)[np.tile(is_edge, 2)] for pair in (ends, ends[::-1]))
+        # Of an edge of several triangles one entry is left.
+        edges = coo_array((np.ones(len(rows)), (rows, columns)), (len(vertices),) * 2).tocsr()
+        begins = np.repeat(np.arange(len(vertices)), np.diff(edges.indptr))
+        ways = vertices[edges.indices] - vertices[begins]
+        lengths = np.linalg.norm(ways, axis=1)
+        self._graph = csr_array((lengths, edges.indices, edges.indptr), edges.shape)
         _, self._parts = connected_components(self._graph, directed=False)
         self._tree = KDTree(vertices[self._used])
 
@@ -169,7 +171,7 @@ class PathFinder:
         a, b = as_positions(np.array([begin, end], dtype=np.float64), "place")
         straight = float(np.linalg.norm(b - a))
         line = np.linspace(a, b, FINENESS)
-        way = self.surface.closest(line).positions
+        way = self._laid(line)
         steps = np.linalg.norm(np.diff(way, axis=0), axis=1)
         lifted = np.linalg.norm(way - line, axis=1)
         _, nearest = self._tree.query(np.vstack([a, b]))
@@ -211,14 +213,14 @@ class PathFinder:
         return CurvePath(_distinct(path), is_closed)
 
     def _laid(self, points: Matrix) -> Matrix:
-        return self.surface.closest(points).positions
+        return self.surface.index.closest(points)[0]
 
     def _over_edges(self, i: int, j: int, straight: float) -> Matrix:
         """Return the vertices on the shortest way over edges between two of one part."""
-        for limit in (DETOUR * straight, np.inf):
+        for limit in (*(share * straight for share in DETOURS), np.inf):
+            # The graph holds both directions.
             reached, before = dijkstra(
                 self._graph,
-                directed=False,
                 indices=np.asarray(i),
                 return_predecessors=True,
                 limit=limit,

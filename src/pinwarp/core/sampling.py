@@ -27,8 +27,11 @@ def triangle_areas(mesh: Mesh) -> Matrix:
     >>> triangle_areas(Mesh([[0, 0, 0], [1, 0, 0], [0, 2, 0]], [[0, 1, 2]])).tolist()
     [1.0]
     """
-    a, b, c = (mesh.vertices[mesh.faces[:, i]] for i in range(3))
-    return np.asarray(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1))
+    # Axis by axis: numpy is several times faster along memory than across threes.
+    a, b, c = (np.ascontiguousarray(mesh.vertices.T)[:, mesh.faces[:, i]] for i in range(3))
+    (ux, uy, uz), (vx, vy, vz) = b - a, c - a
+    squares = (uy * vz - uz * vy) ** 2 + (uz * vx - ux * vz) ** 2 + (ux * vy - uy * vx) ** 2
+    return np.asarray(0.5 * np.sqrt(squares))
 
 
 def even_places(

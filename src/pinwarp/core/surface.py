@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -61,12 +62,18 @@ class Surface:
 
     def __init__(self, mesh: Mesh, index: SurfaceIndex | None = None) -> None:
         self.mesh = mesh
-        self.index = SurfaceIndex(mesh) if index is None else index
+        if index is not None:
+            self.index = index
         # Files that list corners triangle by triangle have no edge in common otherwise.
         self.welded = welded_faces(mesh)
         self._normals = vertex_normals(Mesh(mesh.vertices, self.welded))
         self._rims, self._rim_vertices = _rims(self.welded, len(mesh.vertices))
         self.has_rim = bool(self._rims.any())
+
+    @cached_property
+    def index(self) -> SurfaceIndex:
+        """The index of the triangles, built once somebody searches."""
+        return SurfaceIndex(self.mesh)
 
     def closest(self, points: ArrayLike) -> Places:
         """Return the places of the surface closest to (m, 3) points.
