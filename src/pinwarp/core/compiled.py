@@ -232,54 +232,48 @@ def evaluate_scalar(source, weights, affine, points, out):
 def evaluate_jacobian(source, weights, affine, points, out):
     """Write ``d f_c / d v_j`` into out[:, c, j], all in the precision of the points.
 
-    A landmark's own term is left out at that landmark, where the spline has a cone.
+    A landmark's own term is left out at that landmark, where the spline has a cone. Nine sums fit
+    into registers, not into a block: here the inner loop runs over the landmarks.
     """
     count = source.shape[0]
-    total = points.shape[0]
+    # A whole number would turn single precision into double.
+    one = points.dtype.type(1)
+    zero = points.dtype.type(0)
     # Keeps 0/0 away at a landmark and is lost to rounding anywhere else.
     tiny = np.finfo(points.dtype).tiny
-    for block in numba.prange((total + BLOCK - 1) // BLOCK):
-        first = block * BLOCK
-        size = min(BLOCK, total - first)
-        x = np.empty(BLOCK, points.dtype)
-        y = np.empty(BLOCK, points.dtype)
-        z = np.empty(BLOCK, points.dtype)
-        J = np.empty((9, BLOCK), points.dtype)
-        for i in range(size):
-            x[i] = points[first + i, 0]
-            y[i] = points[first + i, 1]
-            z[i] = points[first + i, 2]
-        for c in range(3):
-            for j in range(3):
-                J[3 * c + j, :size] = affine[1 + j, c]
+    ux, uy, uz = source[:, 0].copy(), source[:, 1].copy(), source[:, 2].copy()
+    wx, wy, wz = weights[:, 0].copy(), weights[:, 1].copy(), weights[:, 2].copy()
+    for i in numba.prange(points.shape[0]):
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        xx, xy, xz = zero, zero, zero
+        yx, yy, yz = zero, zero, zero
+        zx, zy, zz = zero, zero, zero
         for k in range(count):
-            ux = source[k, 0]
-            uy = source[k, 1]
-            uz = source[k, 2]
-            wx = weights[k, 0]
-            wy = weights[k, 1]
-            wz = weights[k, 2]
-            for i in range(size):
-                dx = x[i] - ux
-                dy = y[i] - uy
-                dz = z[i] - uz
-                q = 1 / np.sqrt(dx * dx + dy * dy + dz * dz + tiny)
-                dx *= q
-                dy *= q
-                dz *= q
-                J[0, i] += wx * dx
-                J[1, i] += wx * dy
-                J[2, i] += wx * dz
-                J[3, i] += wy * dx
-                J[4, i] += wy * dy
-                J[5, i] += wy * dz
-                J[6, i] += wz * dx
-                J[7, i] += wz * dy
-                J[8, i] += wz * dz
-        for i in range(size):
-            for c in range(3):
-                for j in range(3):
-                    out[first + i, c, j] = J[3 * c + j, i]
+            dx = x - ux[k]
+            dy = y - uy[k]
+            dz = z - uz[k]
+            q = one / np.sqrt(dx * dx + dy * dy + dz * dz + tiny)
+            dx *= q
+            dy *= q
+            dz *= q
+            xx += wx[k] * dx
+            xy += wx[k] * dy
+            xz += wx[k] * dz
+            yx += wy[k] * dx
+            yy += wy[k] * dy
+            yz += wy[k] * dz
+            zx += wz[k] * dx
+            zy += wz[k] * dy
+            zz += wz[k] * dz
+        out[i, 0, 0] = affine[1, 0] + xx
+        out[i, 0, 1] = affine[2, 0] + xy
+        out[i, 0, 2] = affine[3, 0] + xz
+        out[i, 1, 0] = affine[1, 1] + yx
+        out[i, 1, 1] = affine[2, 1] + yy
+        out[i, 1, 2] = affine[3, 1] + yz
+        out[i, 2, 0] = affine[1, 2] + zx
+        out[i, 2, 1] = affine[2, 2] + zy
+        out[i, 2, 2] = affine[3, 2] + zz
 
 
 @_compile
