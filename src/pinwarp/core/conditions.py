@@ -25,9 +25,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import solve_triangular
 from scipy.spatial.distance import cdist
 
 from pinwarp.core.errors import LandmarkError, PenaltyError, SingularSystemError
@@ -136,7 +138,9 @@ class ConditionFactor:
     projected: Matrix
     well_spaced: bool
 
-    def solve(self, destination: ArrayLike, penalties: ArrayLike = 0.0) -> Spline:
+    def solve(
+        self, destination: ArrayLike, penalties: ArrayLike = 0.0, pulls: ArrayLike | None = None
+    ) -> Spline:
         """Return the spline that meets the conditions as well as their penalties ask.
 
         Parameters
@@ -145,6 +149,9 @@ class ConditionFactor:
             (n, 3) where the places would go; of each only its conditions' directions count.
         penalties
             One for all conditions or (c,), lengths in source mesh units; 0 meets a condition.
+        pulls
+            (n, 3) weights that the places have besides, across their conditions' directions:
+            forces that keep them from sliding any further. Without them nothing pulls.
 
         Returns
         -------
@@ -162,13 +169,23 @@ class ConditionFactor:
         """
         values, target = self._values(destination)
         shifted = self._shifted(penalties)
-        rotated = self.reflections.rotate(values)
-        gamma = self._inverse(shifted[AFFINE:, AFFINE:], rotated[AFFINE:])
+        weights = np.zeros_like(self.source)
+        first = np.zeros((AFFINE, 1))
+        if pulls is not None:
+            # The side conditions are of all weights: those of the pulls are taken off.
+            weights += np.asarray(pulls, dtype=np.float64) * self.scale
+            unit = (self.source - self.centre) / self.scale
+            moments = np.vstack([weights.sum(axis=0), unit.T @ weights]).reshape(-1, 1)
+            first = np.linalg.solve(self.reflections.upper.T, moments)
+            pulled = cdist(unit, unit) @ weights
+            along = self.conditions.directions * pulled[self.conditions.rows]
+            values = values - along.sum(axis=1, keepdims=True)
+        rotated = self.reflections.rotate(values) - shifted[:, :AFFINE] @ first
+        gamma = self._inverse(shifted, rotated[AFFINE:])
         top = np.linalg.solve(
             self.reflections.upper, rotated[:AFFINE] - shifted[:AFFINE, AFFINE:] @ gamma
         )
-        g = self.reflections.rotate_back(np.vstack([np.zeros((AFFINE, 1)), gamma]))
-        weights = np.zeros_like(self.source)
+        g = self.reflections.rotate_back(np.vstack([first, gamma]))
         np.add.at(weights, self.conditions.rows, -self.conditions.directions * g)
         linear = top[3:].reshape(3, 3) / self.scale
         affine = np.vstack([target + top[:3, 0] - self.centre @ linear, linear])
@@ -217,7 +234,7 @@ class ConditionFactor:
         chosen[own, np.arange(len(own))] = 1.0
         chosen[:, -1:] = values
         rotated = self.reflections.rotate(chosen)[AFFINE:]
-        solved = self._inverse(self._shifted(penalties)[AFFINE:, AFFINE:], rotated)
+        solved = self._inverse(self._shifted(penalties), rotated)
         G = rotated[:, :-1].T @ solved
         errors = np.full((len(judged), 3), np.nan)
         for k in range(len(judged)):
@@ -254,9 +271,15 @@ class ConditionFactor:
         shifted += self.projected
         return shifted
 
-    def _inverse(self, matrix: Matrix, values: Matrix) -> Matrix:
-        """Return ``matrix^-1 values``, of least norm where places coincide."""
+    def _inverse(self, shifted: Matrix, values: Matrix) -> Matrix:
+        """Return ``N^-1 values``, of least norm where places coincide."""
+        matrix = shifted[AFFINE:, AFFINE:]
         if self.well_spaced:
+            if shifted is self.projected and self.lower is not None:
+                half = solve_triangular(self.lower, values, lower=True, check_finite=False)
+                return np.asarray(
+                    solve_triangular(self.lower, half, lower=True, trans=1, check_finite=False)
+                )
             solved = cholesky_solve(matrix.copy(), values)
             if solved is not None:
                 return solved
@@ -264,6 +287,14 @@ class ConditionFactor:
         least = 8 * len(matrix) * np.finfo(np.float64).eps * max(1.0, float(numbers.max(initial=0)))
         inverse = np.divide(1.0, numbers, out=np.zeros_like(numbers), where=numbers > least)
         return np.asarray(vectors @ (inverse[:, None] * (vectors.T @ values)))
+
+    @cached_property
+    def lower(self) -> Matrix | None:
+        """The Cholesky factor of N without penalties, for solve after solve; None without one."""
+        try:
+            return np.asarray(np.linalg.cholesky(self.projected[AFFINE:, AFFINE:]))
+        except np.linalg.LinAlgError:
+            return None
 
 
 def factorise_conditions(source: ArrayLike, conditions: Conditions) -> ConditionFactor:

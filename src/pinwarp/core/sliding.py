@@ -125,6 +125,11 @@ class Slid:
     spline: Spline
 
     @property
+    def landmarks(self) -> int:
+        """How many of the places of the spline's source are landmarks: the first ones."""
+        return len(self.used) - int(np.count_nonzero(~self.is_freed))
+
+    @property
     def freed(self) -> int:
         """How many have no counterpart."""
         return int(np.count_nonzero(self.is_freed))
@@ -135,9 +140,9 @@ class Slid:
         They keep their curves and planes, not their places; see
         :meth:`pinwarp.core.conditions.ConditionFactor.leave_one_out`.
         """
-        landmarks = np.arange(len(self.used) - np.count_nonzero(~self.is_freed))
         factor = factorise_conditions(self.spline.source, self.conditions)
-        return factor.leave_one_out(self.spline.evaluate(self.spline.source), landmarks)
+        rest = self.spline.evaluate(self.spline.source)
+        return factor.leave_one_out(rest, np.arange(self.landmarks))
 
 
 def slide(
