@@ -11,7 +11,8 @@ from pinwarp.core.conditions import across, factorise_conditions
 from pinwarp.core.curves import PathFinder
 from pinwarp.core.errors import LandmarkError
 from pinwarp.core.factor import factorise
-from pinwarp.core.groups import CurveGroup, PatchGroup, gathered
+from pinwarp.core.gathering import gathered, with_points_over
+from pinwarp.core.groups import Curve, Handle, Patch
 from pinwarp.core.held_slide import HeldSlide
 from pinwarp.core.patches import patch
 from pinwarp.core.sliding import slide
@@ -23,8 +24,12 @@ SOURCE = PathFinder(Surface(MESH))
 TRUTH = Surface(MESH.with_vertices(truth(MESH.vertices)))
 U = landmarks(14)
 V = truth(U)
-RING = CurveGroup("ring", shape(np.arange(6) * np.pi / 3, np.full(6, 1.3)), 12, is_closed=True)
-SLID = slide(U, V, gathered([RING, PatchGroup("whole", 60)], SOURCE, U).semilandmarks, TRUTH)
+_HANDLES = tuple(map(Handle, shape(np.arange(6) * np.pi / 3, np.full(6, 1.3))))
+RING = Curve("ring", _HANDLES, is_closed=True, count=12)
+NAMED = {f"landmark_{row}": place for row, place in enumerate(U)}
+WHOLE = with_points_over(Patch("whole"), 60, SOURCE, NAMED.values(), [RING])
+POINTS = gathered([RING, WHOLE], NAMED, SOURCE, lambda: SOURCE).semilandmarks
+SLID = slide(U, V, POINTS, TRUTH)
 HELD = HeldSlide.of(SLID)
 
 
@@ -109,8 +114,7 @@ def test_it_is_the_least_bending_of_all_tangents_as_brute_force_finds_it(seed):
 def test_a_short_drag_lands_where_sliding_anew_does():
     v = V.copy()
     v[5] += [0.2, 0.1, -0.2]
-    points = gathered([RING, PatchGroup("whole", 60)], SOURCE, U).semilandmarks
-    anew = slide(U, v, points, TRUTH).spline
+    anew = slide(U, v, POINTS, TRUTH).spline
     assert apart(HELD.warp(v), anew) < 0.35 * apart(SLID.spline, anew)
 
 

@@ -125,7 +125,7 @@ def test_held_and_not_moved_the_warp_is_the_one_at_rest(at_rest, grouped):
     source = np.array([pair.source for pair in pairs])
     destination = np.array([pair.destination for pair in pairs])
     _, targets = groups.following(source, destination)
-    np.testing.assert_allclose(targets, groups.targets, atol=0.05)
+    np.testing.assert_allclose(targets, groups.targets, atol=1e-8)
     n = len(pairs)
     np.testing.assert_allclose(targets[:n], destination, atol=1e-9)
 

@@ -13,12 +13,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.core.conditions import ConditionFactor, factorise_conditions, held
+from pinwarp.core.conditions import held
 from pinwarp.core.curves import PathFinder
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.factor import SourceFactor, factorise
 from pinwarp.core.gathering import Course, gathered, path_of
 from pinwarp.core.groups import Curve, Group, Patch
+from pinwarp.core.held_slide import HeldSlide
 from pinwarp.core.landmarks import Position, Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.sliding import Slid, slide
@@ -158,11 +159,11 @@ class SlidGroups:
 
         They keep planes and tangents, not their places; in destination mesh units.
         """
-        return self._held.leave_one_out(self.targets, np.arange(self.landmarks), penalty)
+        return self._held.factor.leave_one_out(self.targets, np.arange(self.landmarks), penalty)
 
     @cached_property
-    def _held(self) -> ConditionFactor:
-        return factorise_conditions(self.slid.spline.source, self.slid.conditions)
+    def _held(self) -> HeldSlide:
+        return HeldSlide.of(self.slid)
 
     def following(self, source: Matrix, destination: Matrix) -> tuple[SourceFactor, Matrix]:
         """Return factor and destinations for landmarks that were moved, planes and tangents held.
@@ -178,15 +179,11 @@ class SlidGroups:
             As :attr:`factor` and :attr:`targets` are at rest; nothing is measured anew on the
             surface, which takes a hundredth of a slide.
         """
-        n = self.landmarks
-        factor, condition_factor = self.factor, self._held
-        if not np.array_equal(factor.source[:n], source):
-            places = np.vstack([source, factor.source[n:]])
-            factor = factorise(places)
-            condition_factor = factorise_conditions(places, self.slid.conditions)
-        targets = self.targets.copy()
-        targets[:n] = destination
-        return factor, condition_factor.solve(targets).evaluate(factor.source)
+        factor, held = self.factor, self._held
+        if not np.array_equal(factor.source[: self.landmarks], source):
+            held = held.with_source(source)
+            factor = factorise(held.factor.source)
+        return factor, held.warp(destination).evaluate(factor.source)
 
 
 class Slider:
