@@ -24,7 +24,7 @@ from qtpy.QtWidgets import (
 
 from pinwarp.core.findings import FindingKind
 from pinwarp.gui.style import theme
-from pinwarp.gui.style.icons import kept_icon
+from pinwarp.gui.style.icons import icon
 from pinwarp.session.judging.quality import NamedFinding
 
 # Both of these may be wrong; of others one is enough.
@@ -107,11 +107,7 @@ class FindingRow(QFrame):
         if not grave:
             palette.setColor(QPalette.ColorRole.WindowText, theme.quiet_text_colour())
         self.sentence.setPalette(palette)
-        sign = (
-            kept_icon("warning", theme.WARNING_COLOUR)
-            if grave
-            else kept_icon("isolated", theme.QUIET_INK)
-        )
+        sign = icon("warning", theme.WARNING_COLOUR) if grave else icon("isolated", theme.QUIET_INK)
         self.sign.setPixmap(sign.pixmap(QSize(_SIGN, _SIGN)))
 
     @staticmethod

@@ -13,11 +13,18 @@ from pinwarp.io.samples import assets_folder
 
 
 def icon(name: str, colour: str = "") -> QIcon:
-    """Return an icon of the project's own, in the colour of the window's text or in another."""
+    """Return an icon of the project's own, in the colour of the window's text or in another.
+
+    Drawn once for each colour.
+    """
+    normal = colour or theme.text_colour().name()
+    return _drawn(name, normal, theme.selected_text_colour().name())
+
+
+@functools.cache
+def _drawn(name: str, normal: str, selected: str) -> QIcon:
     text = (assets_folder() / "icons" / f"{name}.svg").read_text(encoding="utf-8")
     result = QIcon()
-    normal = colour or theme.text_colour().name()
-    selected = theme.selected_text_colour().name()
     for mode, ink, opacity in (
         (QIcon.Mode.Normal, normal, 1.0),
         (QIcon.Mode.Selected, selected, 1.0),
@@ -32,9 +39,3 @@ def icon(name: str, colour: str = "") -> QIcon:
                 renderer.render(painter)
             result.addPixmap(pixmap, mode)
     return result
-
-
-@functools.cache
-def kept_icon(name: str, colour: str = "") -> QIcon:
-    """Return an icon that is drawn often, in the colour of text or in one of its own."""
-    return icon(name, colour)

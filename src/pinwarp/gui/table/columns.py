@@ -18,7 +18,7 @@ from pinwarp.core.findings import Finding, FindingKind
 from pinwarp.core.landmarks import Landmark, LandmarkState, Side
 from pinwarp.gui.painted.markers import state_icon
 from pinwarp.gui.style import theme
-from pinwarp.gui.style.icons import kept_icon
+from pinwarp.gui.style.icons import icon
 from pinwarp.session import edits
 from pinwarp.session.coordinates import position_text, typed_position
 from pinwarp.session.judging.quality import NamedFinding
@@ -160,7 +160,7 @@ def _tick(row: Row) -> bool | None:
 
 
 def _lock_icon(row: Row) -> QIcon:
-    return kept_icon("locked" if row.landmark.locked else "unlock")
+    return icon("locked" if row.landmark.locked else "unlock")
 
 
 def _lock_tip(row: Row) -> str:
@@ -208,8 +208,8 @@ def _sign(row: Row) -> QIcon | None:
     if not row.findings:
         return None
     if any(found.finding.is_grave for found in row.findings):
-        return kept_icon("warning", theme.WARNING_COLOUR)
-    return kept_icon("isolated", theme.QUIET_INK)
+        return icon("warning", theme.WARNING_COLOUR)
+    return icon("isolated", theme.QUIET_INK)
 
 
 def _side_column(side: Side) -> Column:

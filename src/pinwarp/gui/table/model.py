@@ -15,7 +15,7 @@ from qtpy.QtWidgets import QWidget
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Landmark, LandmarkState, Side
 from pinwarp.gui.style import theme
-from pinwarp.gui.style.icons import kept_icon
+from pinwarp.gui.style.icons import icon
 from pinwarp.gui.table.columns import COLUMNS, NAME, Column, Row, column_number
 from pinwarp.session.judging.quality import NamedFinding, Quality
 from pinwarp.session.mesh_units import unit_on
@@ -263,7 +263,7 @@ class LandmarkModel(QAbstractTableModel):
             case Qt.ItemDataRole.AccessibleTextRole:
                 return column.title
             case Qt.ItemDataRole.DecorationRole if column.header_icon:
-                return kept_icon(column.header_icon)
+                return icon(column.header_icon)
             case Qt.ItemDataRole.TextAlignmentRole:
                 return _alignment(column)
             case Qt.ItemDataRole.ToolTipRole:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 
 from qtpy.QtCore import QObject
@@ -9,6 +10,9 @@ from qtpy.QtWidgets import QProgressBar, QPushButton, QStatusBar
 
 from pinwarp.gui.tasks.jobs import SlowJob
 from pinwarp.gui.tasks.stepped_job import SteppedJob
+
+# Seconds between two steps of the bar.
+PAUSE = 0.1
 
 
 class JobProgress(QObject):
@@ -25,6 +29,7 @@ class JobProgress(QObject):
     def __init__(self, place: QStatusBar, jobs: Sequence[SlowJob | SteppedJob]) -> None:
         super().__init__(place)
         self._jobs = jobs
+        self._shown_at = 0.0
         self.bar = QProgressBar()
         self.bar.setRange(0, 100)
         self.bar.setFixedWidth(220)
@@ -52,8 +57,11 @@ class JobProgress(QObject):
         self.cancel.show()
 
     def _on_progressed(self, share: float, stage: str) -> None:
-        self.bar.setValue(round(100 * share))
         self.bar.setFormat(f"{stage} – %p%")
+        # A bar paints itself, and what lies behind it, at once: nobody reads faster than this.
+        if time.monotonic() - self._shown_at > PAUSE:
+            self._shown_at = time.monotonic()
+            self.bar.setValue(round(100 * share))
 
     def _on_ended(self) -> None:
         if self.is_idle:
