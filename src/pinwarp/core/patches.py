@@ -34,6 +34,7 @@ def patch(
     around: CurvePath | None = None,
     inside: ArrayLike | None = None,
     away_from: ArrayLike = (),
+    seed: int = 0,
 ) -> Semilandmarks:
     """Return points spread over the source, to slide on the destination.
 
@@ -49,6 +50,8 @@ def patch(
         (3,) a place on the side of the curve that is meant.
     away_from
         (n, 3) landmarks and points of curves to keep away from.
+    seed
+        Another seed spreads them another way.
 
     Returns
     -------
@@ -74,7 +77,7 @@ def patch(
         if inside is None:
             raise LandmarkError("Which side of the curve is meant? Click a place there.")
         mesh, region = region_inside(surface.mesh, around, inside)
-    positions, triangles = spread_places(mesh, count, away_from, region)
+    positions, triangles = spread_places(mesh, count, away_from, region, seed)
     # The pieces of a triangle follow one another in rounds.
     normals = surface.at(triangles % len(surface.mesh.faces), positions).normals
     return Semilandmarks(positions, normals)

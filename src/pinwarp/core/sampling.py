@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import KDTree
@@ -15,6 +17,8 @@ Rows = NDArray[np.int64]
 # So many places are chosen from; for each that is chosen there are at least so many.
 CANDIDATES = 12_000
 CHOICE = 12
+# Seeds are so many places of the sequence apart.
+SEED_STEP = 7919
 # The plastic number's powers: the most even sequence of pairs (Roberts 2018).
 _STEP = np.array([0.7548776662466927, 0.5698402909980532])
 
@@ -35,7 +39,7 @@ def triangle_areas(mesh: Mesh) -> Matrix:
 
 
 def even_places(
-    mesh: Mesh, count: int, region: NDArray[np.bool_] | None = None
+    mesh: Mesh, count: int, region: NDArray[np.bool_] | None = None, seed: int = 0
 ) -> tuple[Matrix, Rows]:
     """Return places on a surface, as many on every piece as its area asks for.
 
@@ -47,6 +51,8 @@ def even_places(
         How many.
     region
         (t,) the triangles to take; without it all.
+    seed
+        Which of many ways.
 
     Returns
     -------
@@ -68,7 +74,7 @@ def even_places(
     number = np.arange(count)
     triangles = np.searchsorted(ends, (number + 0.5) / count * ends[-1], side="right")
     triangles = np.minimum(triangles, len(areas) - 1)
-    s, t = np.modf(0.5 + _STEP[:, None] * (number + 1))[0]
+    s, t = np.mod(0.5 + _STEP[:, None] * (number + 1 + seed * SEED_STEP), 1.0)
     # The far half of the parallelogram is folded back into the triangle.
     over = s + t > 1
     s, t = np.where(over, 1 - s, s), np.where(over, 1 - t, t)
@@ -77,7 +83,11 @@ def even_places(
 
 
 def spread_places(
-    mesh: Mesh, count: int, away_from: ArrayLike = (), region: NDArray[np.bool_] | None = None
+    mesh: Mesh,
+    count: int,
+    away_from: ArrayLike = (),
+    region: NDArray[np.bool_] | None = None,
+    seed: int = 0,
 ) -> tuple[Matrix, Rows]:
     """Return places spread as far from one another, and from landmarks, as goes one by one.
 
@@ -94,6 +104,8 @@ def spread_places(
         (n, 3) places that are taken already.
     region
         (t,) the triangles to take; without it all.
+    seed
+        Another seed gives other places.
 
     Returns
     -------
@@ -113,8 +125,24 @@ def spread_places(
     >>> sorted(np.rint(positions)[:, :2].tolist())
     [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]]
     """
-    candidates, triangles = even_places(mesh, max(CANDIDATES, CHOICE * count), region)
     taken = np.asarray(away_from, dtype=np.float64).reshape(-1, 3)
+    before = np.zeros((0, 3)), np.zeros(0, np.int64)
+    choice = CANDIDATES
+    if CHOICE * count > CANDIDATES:
+        # More than that are chosen from as many again, once the first half is there.
+        choice = CANDIDATES * 2 ** math.ceil(math.log2(CHOICE * count / CANDIDATES))
+        before = spread_places(mesh, choice // CHOICE // 2, taken, region, seed)
+        taken = np.vstack([taken, before[0]])
+    candidates, triangles = even_places(mesh, choice, region, seed)
+    chosen = _farthest(candidates, taken, count - len(before[0]))
+    return (
+        np.vstack([before[0], candidates[chosen]]),
+        np.concatenate([before[1], triangles[chosen]]),
+    )
+
+
+def _farthest(candidates: Matrix, taken: Matrix, count: int) -> Rows:
+    """Return rows of candidates, each the farthest from what is taken and from those before."""
     squares: Matrix
     if len(taken):
         squares = np.asarray(KDTree(taken).query(candidates)[0]) ** 2
@@ -137,4 +165,4 @@ def spread_places(
             squares[:] = gap
         else:
             np.minimum(squares, gap, out=squares)
-    return candidates[chosen], triangles[chosen]
+    return chosen
