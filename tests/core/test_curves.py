@@ -10,9 +10,11 @@ from tests.core.bones import bone, shape
 from pinwarp.core.curves import CurvePath, PathFinder, tangents_along
 from pinwarp.core.errors import LandmarkError, MeshError
 from pinwarp.core.mesh import Mesh
-from pinwarp.core.patches import patch, region_inside, split
+from pinwarp.core.patches import patch, region_inside
+from pinwarp.core.pieces import pieces_along
 from pinwarp.core.sampling import triangle_areas
 from pinwarp.core.surface import Surface
+from pinwarp.core.surface_distance import SurfaceIndex
 
 
 def ball(radius=10.0):
@@ -103,8 +105,8 @@ def test_a_region_on_a_coarse_mesh_is_as_large_as_its_curve_says():
     surface = Surface(coarse)
     ring = surface.closest(shape(np.linspace(0, 2 * np.pi, 9)[:-1], np.full(8, 1.2))).positions
     around = PathFinder(surface).through(ring, is_closed=True)
-    fine, region = region_inside(coarse, around, [0, 0, 100])
-    _, other = region_inside(coarse, around, [0, 0, -100])
+    fine, _, region = region_inside(surface, around, [0, 0, 100])
+    _, _, other = region_inside(surface, around, [0, 0, -100])
     areas = triangle_areas(fine)
     assert not (region & other).any()
     # The curve's own triangles are of neither side.
@@ -129,9 +131,39 @@ def test_an_open_curve_and_a_place_on_the_curve_are_refused():
         patch(BALL_SURFACE, 5, around=path, inside=path.places[7])
 
 
-def test_splitting_keeps_the_surface_and_tells_where_each_piece_came_from():
+@pytest.mark.parametrize("is_soup", [False, True])
+def test_splitting_along_a_curve_keeps_the_surface_and_tells_where_each_piece_came_from(is_soup):
     mesh = bone(6, 8)
-    fine = split(mesh)
-    parents = np.arange(len(fine.faces)) % len(mesh.faces)
-    sums = np.bincount(parents, triangle_areas(fine))
+    if is_soup:
+        mesh = Mesh(mesh.vertices[mesh.faces.ravel()], np.arange(mesh.faces.size).reshape(-1, 3))
+    along = shape(np.linspace(0, 2 * np.pi, 400), np.full(400, 1.2))
+    along = SurfaceIndex(mesh).closest(along)[0]
+    pieces = pieces_along(mesh, along, 2.0)
+    sums = np.bincount(pieces.parents, triangle_areas(pieces.mesh), len(mesh.faces))
     np.testing.assert_allclose(sums, triangle_areas(mesh))
+    corners = pieces.mesh.vertices[pieces.mesh.faces]
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    apart = np.linalg.norm(corners.mean(axis=1)[:, None] - along, axis=2).min(axis=1)
+    assert (longest[apart < 2.0] <= 2.0).all()
+    assert len(pieces.mesh.faces) < 4000
+    nothing = np.zeros(len(pieces.mesh.faces), bool)
+    assert np.ptp(pieces.parts(nothing)) == 0
+    # Without what the curve runs over the bone falls in two, whatever the sizes.
+    is_wall = np.zeros(len(pieces.mesh.faces), bool)
+    is_wall[SurfaceIndex(pieces.mesh).closest(along)[1]] = True
+    parts = pieces.parts(is_wall)
+    shares = np.bincount(parts, np.where(is_wall, 0, triangle_areas(pieces.mesh)))
+    largest = np.sort(shares / triangle_areas(mesh).sum())[::-1]
+    assert largest[1] > 0.2
+    assert largest[:2].sum() > 0.9
+    assert largest[2:].max(initial=0) < 0.001
+
+
+def test_a_way_that_was_found_is_not_looked_for_again():
+    finder = PathFinder(BALL_SURFACE)
+    first = finder.between([10, 0, 0], [0, 10, 0])
+    assert finder.between([10, 0, 0], [0, 10, 0]) is first
+    with pytest.raises(ValueError, match="read-only"):
+        first[0] = 0.0
+    other = finder.through([[10, 0, 0], [0, 10, 0], [0, 0, 10]])
+    np.testing.assert_array_equal(other.places[: len(first)], first)

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
-from scipy.spatial import KDTree
 
 from pinwarp.core.errors import LandmarkError, MeshError
 from pinwarp.core.positions import as_positions
@@ -22,6 +21,8 @@ Rows = NDArray[np.int64]
 FINENESS = 32
 SHORTENINGS = 60
 EVEN_AGAIN = 10
+# So many ways are remembered (a megabyte).
+REMEMBERED = 1000
 # Dijkstra looks no further than so many times the straight line, before it looks everywhere.
 DETOURS = (1.5, 4.0)
 # Points along a path keep this share of their mean spacing apart.
@@ -120,7 +121,7 @@ def tangents_along(points: Matrix, is_closed: bool = False) -> Matrix:
 
 
 class PathFinder:
-    """Finds short ways over a surface. Immutable.
+    """Finds short ways over a surface, and remembers them. Any thread may ask.
 
     A straight line between two places is laid on the surface; where it lies badly, the way over
     the edges is taken instead (Dijkstra 1959). Then it is drawn tight on the surface.
@@ -142,7 +143,6 @@ class PathFinder:
     def __init__(self, surface: Surface) -> None:
         self.surface = surface
         faces, vertices = surface.welded, surface.mesh.vertices
-        self._used = np.unique(faces)
         ends = faces.ravel(), faces[:, [1, 2, 0]].ravel()
         is_edge = ends[0] != ends[1]
         rows, columns = (np.concatenate(pair)[np.tile(is_edge, 2)] for pair in (ends, ends[::-1]))
@@ -153,7 +153,8 @@ class PathFinder:
         lengths = np.linalg.norm(ways, axis=1)
         self._graph = csr_array((lengths, edges.indices, edges.indptr), edges.shape)
         _, self._parts = connected_components(self._graph, directed=False)
-        self._tree = KDTree(vertices[self._used])
+        # Whoever drags one handle of a curve asks for all other ways again and again.
+        self._ways: dict[bytes, Matrix] = {}
 
     def between(self, begin: ArrayLike, end: ArrayLike) -> Matrix:
         """Return the places of a short way from one place of the surface to another.
@@ -169,13 +170,23 @@ class PathFinder:
             When no way over the surface leads from one to the other.
         """
         a, b = as_positions(np.array([begin, end], dtype=np.float64), "place")
+        key = np.concatenate([a, b]).tobytes()
+        way = self._ways.get(key)
+        if way is None:
+            way = self._found(a, b)
+            way.setflags(write=False)
+            if len(self._ways) >= REMEMBERED:
+                self._ways.clear()
+            self._ways[key] = way
+        return way
+
+    def _found(self, a: Matrix, b: Matrix) -> Matrix:
         straight = float(np.linalg.norm(b - a))
         line = np.linspace(a, b, FINENESS)
         way = self._laid(line)
         steps = np.linalg.norm(np.diff(way, axis=0), axis=1)
         lifted = np.linalg.norm(way - line, axis=1)
-        _, nearest = self._tree.query(np.vstack([a, b]))
-        i, j = self._used[np.asarray(nearest)].tolist()
+        i, j = self._corner(a), self._corner(b)
         if self._parts[i] != self._parts[j]:
             raise MeshError(
                 "The places lie on two parts of the mesh that no surface joins: "
@@ -213,7 +224,14 @@ class PathFinder:
         return CurvePath(_distinct(path), is_closed)
 
     def _laid(self, points: Matrix) -> Matrix:
-        return self.surface.index.closest(points)[0]
+        return self.surface.index.closest(points, often=True)[0]
+
+    def _corner(self, place: Matrix) -> int:
+        """Return the closest corner of the triangle that is closest to a place."""
+        _, triangles = self.surface.index.closest(place[None], often=True)
+        corners = self.surface.welded[triangles[0]]
+        gaps = np.linalg.norm(self.surface.mesh.vertices[corners] - place, axis=1)
+        return int(corners[gaps.argmin()])
 
     def _over_edges(self, i: int, j: int, straight: float) -> Matrix:
         """Return the vertices on the shortest way over edges between two of one part."""

@@ -83,7 +83,7 @@ class Surface:
         LandmarkError
             When a point is not finite or the shape is another.
         """
-        positions, triangles = self.index.closest(points)
+        positions, triangles = self.index.closest(points, often=True)
         return self.at(triangles, positions)
 
     def at(self, triangles: Rows, positions: Matrix) -> Places:

@@ -90,15 +90,19 @@ class SurfaceIndex:
         LandmarkError
             When a place is not finite (the message names its row) or the shape is another.
         """
-        return np.sqrt(self._search(kernel.as_points(places))[1])
+        places = kernel.as_points(places)
+        return np.sqrt(self._search(places, self._worth(len(places)))[1])
 
-    def closest(self, places: ArrayLike) -> tuple[Matrix, Rows]:
+    def closest(self, places: ArrayLike, *, often: bool = False) -> tuple[Matrix, Rows]:
         """Return the closest position on the surface, and the triangle that it lies in.
 
         Parameters
         ----------
         places
             As for :meth:`distances`.
+        often
+            Whether this is one of many such questions, so that compiled code is worth loading
+            for a small mesh too.
 
         Returns
         -------
@@ -108,8 +112,8 @@ class SurfaceIndex:
             Rows of ``mesh.faces``; any of them where several are equally close.
         """
         places = kernel.as_points(places)
-        rows, _ = self._search(places)
-        loops = self._worth(len(places))
+        loops = _compiled() if often else self._worth(len(places))
+        rows, _ = self._search(places, loops)
         if loops is None:
             return places - _apart(self._triangles[rows], places), self._order[rows]
         positions = np.empty_like(places)
@@ -122,9 +126,8 @@ class SurfaceIndex:
         """Return the compiled loops where so many places are worth them."""
         return _compiled() if count + len(self._order) >= WORTH_COMPILING else None
 
-    def _search(self, places: Matrix) -> tuple[Rows, Matrix]:
+    def _search(self, places: Matrix, loops: ModuleType | None) -> tuple[Rows, Matrix]:
         """Return the row in the tree of every place's closest triangle, and squared distances."""
-        loops = self._worth(len(places))
         if loops is None:
             return self._search_with_numpy(places)
         # A mesh's vertices are read-only.
