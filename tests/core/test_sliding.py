@@ -101,7 +101,9 @@ def test_points_of_a_drawn_curve_stay_on_it_in_order():
     slid = slide(u, truth(u), Semilandmarks(points.source, points.normals, curves), ON_TRUTH)
     ring = slid.positions[30:]
     on_path, _ = path.closest(ring)
-    assert np.abs(on_path - ring).max() < 1e-9
+    # The path is straight between its places, the surface is not.
+    assert np.abs(on_path - ring).max() < 0.05
+    assert ON_TRUTH.index.distances(ring).max() < 1e-9
     assert not slid.is_freed[30:].any()
     assert slid.energies[-1] < slid.energies[0]
 

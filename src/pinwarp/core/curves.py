@@ -21,6 +21,8 @@ Rows = NDArray[np.int64]
 FINENESS = 32
 SHORTENINGS = 60
 EVEN_AGAIN = 10
+# Places of a curve that are closer than this share of the mesh's size are one.
+ONE_PLACE = 1e-9
 # So many ways are remembered (a megabyte).
 REMEMBERED = 1000
 # Dijkstra looks no further than so many times the straight line, before it looks everywhere.
@@ -82,6 +84,21 @@ class CurvePath:
             along = _in_order(along, float(ends[-1]))
         span = 1e-3 * float(ends[-1])
         return self._at(along), unit_vectors(self._at(along + span) - self._at(along - span))
+
+    def along_with(self, points: Matrix) -> CurvePath:
+        """Return the path in the direction in which (k, 3) points come along it.
+
+        Examples
+        --------
+        >>> path = CurvePath(np.array([[0.0, 0, 0], [4, 0, 0]]))
+        >>> path.along_with(np.array([[3.0, 1, 0], [1, 1, 0]])).places[0].tolist()
+        [4.0, 0.0, 0.0]
+        """
+        if self.is_closed:
+            return self
+        reverse = CurvePath(self.places[::-1])
+        ways = [np.sum((path.closest(points)[0] - points) ** 2) for path in (self, reverse)]
+        return reverse if ways[1] < ways[0] else self
 
     def _along(self) -> tuple[Matrix, Matrix]:
         """Return the corners, the first once more on a closed path, and how far along each is."""
@@ -214,11 +231,13 @@ class PathFinder:
             When they lie on parts of the mesh that no surface joins.
         """
         stops = as_positions(places, "place of the curve")
+        # What lies off the surface would lead there and back.
+        stops = _distinct(self._laid(stops), ONE_PLACE * self.surface.mesh.diagonal)
         least = 3 if is_closed else 2
-        if len(_distinct(stops)) < least:
+        if len(stops) < least:
             kind = "closed curve" if is_closed else "curve"
             raise LandmarkError(f"A {kind} needs at least {least} places apart from one another.")
-        stops = _distinct(np.vstack([stops, stops[:1]]) if is_closed else stops)
+        stops = np.vstack([stops, stops[:1]]) if is_closed else stops
         ways = [self.between(a, b)[:-1] for a, b in itertools.pairwise(stops)]
         path = np.vstack(ways if is_closed else [*ways, stops[-1:]])
         return CurvePath(_distinct(path), is_closed)
@@ -251,8 +270,8 @@ class PathFinder:
         return np.asarray(self.surface.mesh.vertices[chain[::-1]])
 
 
-def _distinct(places: Matrix) -> Matrix:
+def _distinct(places: Matrix, tolerance: float = 0.0) -> Matrix:
     """Return places without those that repeat the one before."""
     moved = np.ones(len(places), np.bool_)
-    moved[1:] = (np.diff(places, axis=0) != 0).any(axis=1)
+    moved[1:] = (np.abs(np.diff(places, axis=0)) > tolerance).any(axis=1)
     return places[moved]

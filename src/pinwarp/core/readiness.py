@@ -17,6 +17,8 @@ Matrix = NDArray[np.float64]
 FEWEST = 4
 # Surfaces face alike where their normals differ by less than 60 degrees.
 ALIKE = 0.5
+# Where more than this share faces the opposite way, a mesh is inside out; wrong pairs mix them.
+MOST_OPPOSITE = 0.5
 
 
 class InsideOutError(MeshError):
@@ -101,8 +103,13 @@ def check_facing(cosines: Matrix, destination: Mesh, least: float) -> None:
     MeshError
         When too few face the same way.
     """
-    alike = float(np.mean(cosines > ALIKE)) if len(cosines) else 0.0
-    if len(cosines) and float(np.median(cosines)) < 0:
+    if not len(cosines):
+        raise MeshError(
+            "The destination ends before all points of the warped source: check that the pairs "
+            "and the meshes belong together."
+        )
+    alike, opposite = float(np.mean(cosines > ALIKE)), float(np.mean(cosines < -ALIKE))
+    if opposite > MOST_OPPOSITE:
         which = "destination" if enclosed_volume(destination) < 0 else "source"
         raise InsideOutError(
             f"The surfaces face opposite ways: one mesh is inside out, most likely the {which}. "
@@ -110,9 +117,10 @@ def check_facing(cosines: Matrix, destination: Mesh, least: float) -> None:
         )
     if alike < least:
         raise MeshError(
-            f"Only {alike:.0%} of the warped source faces as the destination does next to it: the "
-            "landmarks do not lay one surface on the other yet. Look for wrong pairs, or place "
-            "landmarks where the surfaces lie furthest apart."
+            f"Only {alike:.0%} of the warped source faces as the destination does next to it, "
+            f"{opposite:.0%} the opposite way: the landmarks do not lay one surface on the other "
+            "yet, or a mesh is inside out in part. Look for wrong pairs, or place landmarks where "
+            "the surfaces lie furthest apart."
         )
 
 

@@ -14,7 +14,7 @@ has no counterpart, because the surface faces elsewhere there or ends, is freed:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,7 +28,7 @@ from pinwarp.core.conditions import (
     held_along,
 )
 from pinwarp.core.curves import CurvePath, tangents_along
-from pinwarp.core.errors import LandmarkError
+from pinwarp.core.errors import LandmarkError, MeshError
 from pinwarp.core.factor import factorise
 from pinwarp.core.positions import as_positions
 from pinwarp.core.readiness import check_facing, starting_warp
@@ -45,7 +45,7 @@ LARGEST_ANGLE = 60.0
 FACING_ALIKE = 0.8
 # Sliding ends when a turn saves less than this share of the energy, or after so many.
 WORTH_A_TURN = 1e-4
-TURNS = 30
+TURNS = 15
 HALVINGS = 4
 # Energies below this share of the size of the destination are rounding.
 ROUNDING = 1e-13
@@ -63,8 +63,8 @@ class SlidingCurve:
     is_closed
         Whether the last point is a neighbour of the first.
     path
-        The curve as drawn on the destination: the points stay on it, in order. Without one they
-        slide along their own tangents, and the surface keeps them.
+        The curve as drawn on the destination: the points stay on it, in order, and on the surface
+        between its places. Without one they slide along their own tangents.
     """
 
     rows: Rows
@@ -176,6 +176,10 @@ def slide(
     ------
     LandmarkError
         When the landmarks do not determine an affine map, or a row cannot be used.
+    InsideOutError
+        When one mesh faces inwards.
+    MeshError
+        When the landmarks do not lay one surface on the other, or no point has a counterpart.
 
     Examples
     --------
@@ -229,9 +233,10 @@ class _Bending:
         self.rows = rows
         self.factor = factorise(source[rows])
         if not self.factor.well_spaced:
-            found = next(iter(self.factor.duplicates), (0, 0))
+            close = [finding.rows for finding in self.factor.findings]
+            first, second, *_ = rows[list((*self.factor.duplicates, *close)[0])].tolist()
             raise LandmarkError(
-                f"Points {found[0]} and {found[1]} of the source lie at one place, or nearly: "
+                f"Points {first} and {second} of the source lie at one place, or nearly: "
                 "remove one of them."
             )
         self._lower = cho_factor(self.factor.bending, lower=True, check_finite=False)
@@ -272,9 +277,17 @@ class _Task:
         points = as_positions(semilandmarks.source, "semilandmark")
         self.source = np.vstack([self.first.source, points])
         self.destination = as_positions(destination, "destination landmark")
-        self.normals = np.vstack([np.zeros_like(self.destination), semilandmarks.normals])
+        normals = as_positions(semilandmarks.normals, "normal of a semilandmark")
+        if len(normals) != len(points):
+            raise LandmarkError(f"{len(points)} semilandmarks have {len(normals)} normals.")
+        self.normals = np.vstack([np.zeros_like(self.destination), normals])
         self.is_landmark = np.arange(len(self.source)) < self.landmarks
-        self.curves = semilandmarks.curves
+        carried = self.first.evaluate(self.source)
+        # A curve may have been drawn from either end.
+        self.curves = [
+            replace(curve, path=curve.path.along_with(carried[curve.rows])) if curve.path else curve
+            for curve in semilandmarks.curves
+        ]
         self.on_curve = np.zeros(len(self.source), np.bool_)
         # Where somebody drew the curve on the destination, it is there.
         self.is_drawn = self.on_curve.copy()
@@ -295,6 +308,11 @@ class _Task:
             faces = carried_normals(self.first, self.source[judged], self.normals[judged])
             check_facing(np.sum(faces * normals[judged], axis=1), self.surface.mesh, FACING_ALIKE)
         freed = self._astray(self.first, normals, on_rim)
+        if len(freed) > self.landmarks and freed[self.landmarks :].all():
+            raise MeshError(
+                "No point has a counterpart: the destination ends or faces elsewhere wherever the "
+                "landmarks carry one. Look for wrong pairs, or spread the points elsewhere."
+            )
         bending = _Bending(self.source, np.flatnonzero(~freed))
         return _State(positions, normals, on_rim, freed, bending, bending.of(positions))
 
@@ -343,22 +361,22 @@ class _Task:
         return Conditions.joined(parts)
 
     def _laid(self, points: Matrix, is_freed: Mask) -> tuple[Matrix, Matrix, Mask]:
-        """Return the places on the surface or on their drawn curves; what is freed stays."""
+        """Return the places on the surface, next to their drawn curves; what is freed stays."""
         positions, normals = points.copy(), np.zeros_like(points)
         on_rim = np.zeros(len(points), np.bool_)
         sliding = ~self.is_landmark
-        met = self.surface.closest(points[sliding])
+        for curve in self.curves:
+            if curve.path is not None:
+                along, _ = curve.path.closest(points[curve.rows])
+                positions[curve.rows] = along
+        met = self.surface.closest(positions[sliding])
         positions[sliding], normals[sliding], on_rim[sliding] = (
             met.positions,
             met.normals,
             met.on_rim,
         )
-        for curve in self.curves:
-            if curve.path is not None:
-                along, _ = curve.path.closest(points[curve.rows])
-                mine = ~self.is_landmark[curve.rows]
-                positions[curve.rows[mine]] = along[mine]
-        positions[is_freed] = points[is_freed]
+        stays = self.is_landmark | is_freed
+        positions[stays] = points[stays]
         return positions, normals, on_rim
 
     def _astray(self, spline: Spline, normals: Matrix, on_rim: Mask) -> Mask:
