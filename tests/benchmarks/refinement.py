@@ -11,7 +11,9 @@ from typing import Any
 import numpy as np
 import trimesh
 
+from pinwarp.core.curves import PathFinder
 from pinwarp.core.factor import factorise
+from pinwarp.core.held_slide import HeldSlide
 from pinwarp.core.jacobian import determinants, jacobians
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.patches import patch
@@ -22,7 +24,7 @@ from pinwarp.core.spline import solve
 from pinwarp.core.surface import Surface
 from pinwarp.core.surface_distance import SurfaceIndex
 from tests.benchmarks.timing import in_turn
-from tests.core.bones import bone, landmarks, named_places, truth
+from tests.core.bones import bone, landmarks, named_places, shape, truth
 
 Row = dict[str, Any]
 PAIRS = 20
@@ -33,7 +35,7 @@ MOST_FOR_PEER = 10_000
 
 
 def sliding() -> Iterator[Row]:
-    """A whole slide, cold, and what a landmark's drop costs, over a bone of 90,000 vertices."""
+    """A whole slide, as after a landmark's drop, and what leads to it; 90,000 vertices."""
     source = bone(220, 408)
     surface, target = Surface(source), Surface(source.with_vertices(truth(source.vertices)))
     u = landmarks(100)
@@ -43,11 +45,24 @@ def sliding() -> Iterator[Row]:
         points = patch(surface, count, away_from=u)
         ways = {"pinwarp": lambda p=points: slide(u, v, p, target)}
         yield {"what": f"slide {count}"} | sizes | in_turn(ways, 1.0, 5)
-    yield (
-        {"what": "spread 300"}
-        | sizes
-        | in_turn({"pinwarp": lambda: patch(surface, 300, away_from=u)}, 1.0, 5)
-    )
+    points = patch(surface, 300, away_from=u)
+    held = HeldSlide.of(slide(u, v, points, target))
+    ends = surface.closest(shape(np.array([0.0, 2.5]), np.array([0.6, 2.2]))).positions
+    around = shape(np.linspace(0, 2 * np.pi, 9)[:-1], np.full(8, 1.2))
+    finder = PathFinder(surface)
+    ring = finder.through(surface.closest(around).positions, is_closed=True)
+    steps: dict[str, Callable[[], Any]] = {
+        "surface made ready": lambda: Surface(source).index,
+        "ways made ready": lambda: PathFinder(surface),
+        "spread 300": lambda: patch(surface, 300, away_from=u),
+        "spread 300 inside": lambda: patch(surface, 300, around=ring, inside=[0, 0, 100]),
+        # Once more from the start: what was found is remembered.
+        "curve segment": lambda: finder._found(ends[0], ends[1]),
+        "drag frame 300": lambda: held.warp(v),
+        "drag frame 300, source": lambda: held.with_source(u).warp(v),
+    }
+    for what, step in steps.items():
+        yield {"what": what} | sizes | in_turn({"pinwarp": step}, 1.0, 5)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,8 +108,10 @@ def _outcomes(size: tuple[int, int]) -> dict[str, _Outcome]:
     target = source.with_vertices(truth(source.vertices))
     u = landmarks(PAIRS)
     v = truth(u)
+    surfaces = Surface(source), Surface(target)
     ways: dict[str, Callable[[], Any]] = {
         "landmarks": lambda: solve(factorise(u), v),
+        "300 slid": lambda: slide(u, v, patch(surfaces[0], 300, away_from=u), surfaces[1]).spline,
         "pinwarp": lambda: refine(source, target, u, v).spline,
     }
     found = {}
