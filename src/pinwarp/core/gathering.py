@@ -13,7 +13,7 @@ from scipy.spatial import KDTree
 
 from pinwarp.core.curves import CurvePath, PathFinder
 from pinwarp.core.errors import LandmarkError, MeshError
-from pinwarp.core.groups import Curve, Group, Patch, check_group
+from pinwarp.core.groups import MOST_POINTS, Curve, Group, Patch, check_group
 from pinwarp.core.landmarks import Position, Side, as_position
 from pinwarp.core.patches import patch
 from pinwarp.core.sliding import Semilandmarks, SlidingCurve
@@ -221,6 +221,12 @@ def gathered(
     LandmarkError, MeshError
         When a curve is none on its surface; the message names it.
     """
+    total = sum(group.count for group in groups)
+    if total > MOST_POINTS:
+        raise LandmarkError(
+            f"Curves and patches have {total:,} points, and at most {MOST_POINTS:,} can slide: "
+            "give them fewer."
+        )
     rows = {name: row for row, name in enumerate(landmarks)}
     courses: list[Course | None] = []
     for group in groups:
