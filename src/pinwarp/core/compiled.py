@@ -277,6 +277,20 @@ def evaluate_jacobian(source, weights, affine, points, out):
 
 
 @_compile
+def pulls(places, directions, out):
+    """Write ``-|p_a - p_b| (d_a . d_b)`` into out[a, b]: (c, 3), (c, 3), (c, c)."""
+    count = places.shape[0]
+    x, y, z = places[:, 0].copy(), places[:, 1].copy(), places[:, 2].copy()
+    dx, dy, dz = directions[:, 0].copy(), directions[:, 1].copy(), directions[:, 2].copy()
+    for a in numba.prange(count):
+        xa, ya, za = x[a], y[a], z[a]
+        ux, uy, uz = dx[a], dy[a], dz[a]
+        for b in range(count):
+            r = np.sqrt((xa - x[b]) ** 2 + (ya - y[b]) ** 2 + (za - z[b]) ** 2)
+            out[a, b] = -r * (ux * dx[b] + uy * dy[b] + uz * dz[b])
+
+
+@_compile
 def add_influence(start, influence, shift, out):
     """Write ``start + influence (x) shift`` into out: (m, 3), (m,), (3,), (m, 3)."""
     for i in numba.prange(start.shape[0]):

@@ -32,6 +32,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solve_triangular
 from scipy.spatial.distance import cdist
 
+from pinwarp.core import kernel
 from pinwarp.core.errors import LandmarkError, PenaltyError, SingularSystemError
 from pinwarp.core.factor import is_well_spaced
 from pinwarp.core.householder import Reflections
@@ -350,16 +351,13 @@ def factorise_conditions(source: ArrayLike, conditions: Conditions) -> Condition
     extents = np.linalg.svd(reflections.upper, compute_uv=False)
     if not extents[-1] > KNOWN * extents[0]:
         raise LandmarkError(_open("The conditions do not determine"))
-    pulls = cdist(own, own)
-    pulls *= directions @ directions.T
-    np.negative(pulls, out=pulls)
     return ConditionFactor(
         source=places,
         conditions=Conditions(rows, directions),
         centre=centre,
         scale=scale,
         reflections=reflections,
-        projected=reflections.conjugate(pulls),
+        projected=reflections.conjugate(kernel.pulls(own, directions)),
         well_spaced=is_well_spaced(unit),
     )
 

@@ -65,8 +65,11 @@ class HeldSlide:
         pulls = spline.weights.copy()
         along = np.sum(conditions.directions * pulls[conditions.rows], axis=1, keepdims=True)
         np.subtract.at(pulls, conditions.rows, along * conditions.directions)
+        factor = factorise_conditions(spline.source, conditions)
+        # Now, in whatever thread this is, and not in the first frame.
+        _ = factor.lower
         return cls(
-            factor=factorise_conditions(spline.source, conditions),
+            factor=factor,
             destination=spline.evaluate(spline.source),
             pulls=pulls,
             landmarks=slid.landmarks,

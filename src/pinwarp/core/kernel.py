@@ -78,6 +78,7 @@ def warm_up() -> None:
     combine_fields(fields, np.zeros(1), affine, points, loops=loops)
     influence = evaluate_scalar(source, np.zeros(1), np.zeros(4), points, loops=loops)
     evaluate_jacobian(np.zeros((1, 3)), np.zeros((1, 3)), affine, points, loops=loops)
+    loops.pulls(np.zeros((1, 3)), np.zeros((1, 3)), np.empty((1, 1)))
     add_influence(points, influence, np.zeros(3), np.empty_like(points), loops=loops)
 
 
@@ -166,6 +167,20 @@ def evaluate_jacobian(
             slopes = (points[part, j, None] - source[:, j]) * inverse
             out[part, :, j] += slopes @ weights
     return out
+
+
+def pulls(places: Matrix, directions: Matrix) -> Matrix:
+    """Return (c, c) ``-|p_a - p_b| (d_a . d_b)`` of (c, 3) places and directions."""
+    count = len(places)
+    loops = _worth(count * count)
+    if loops is None:
+        found = cdist(places, places)
+        found *= directions @ directions.T
+        return np.negative(found, out=found)
+    found = np.empty((count, count))
+    with _threads_for(count * count):
+        loops.pulls(places, directions, found)
+    return found
 
 
 def as_points(points: ArrayLike) -> Matrix:
