@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -118,6 +120,18 @@ def test_points_of_a_curve_that_was_not_drawn_stay_on_the_surface():
     # A curve point may leave its place along the curve only: it slides less than a free one.
     unheld = slide(u, truth(u), points, ON_TRUTH)
     assert slid.energies[-1] >= unheld.energies[-1] * (1 - 1e-6)
+
+
+@pytest.mark.parametrize(("count", "is_closed"), [(1, False), (1, True), (2, True)])
+def test_points_of_a_curve_too_short_for_a_direction_slide_on_the_surface(count, is_closed):
+    u = landmarks(12)
+    points = with_curve(patch(ON_SOURCE, 30, away_from=u), count)
+    curves = (SlidingCurve(len(u) + 30 + np.arange(count), is_closed),)
+    on_curve, on_surface = (
+        slide(u, truth(u), replace(points, curves=either), ON_TRUTH) for either in (curves, ())
+    )
+    assert on_surface.slid[30:].max() > 0.01
+    np.testing.assert_allclose(on_curve.positions, on_surface.positions, atol=1e-9)
 
 
 def test_a_curve_may_end_in_landmarks():

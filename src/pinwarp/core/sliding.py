@@ -357,7 +357,11 @@ class _Task:
             else:
                 _, tangents = curve.path.closest(points)
             mine = (new[curve.rows] >= 0) & ~self.is_landmark[curve.rows]
-            parts.append(held_across(new[curve.rows[mine]], tangents[mine]))
+            # One point alone, or two of a ring, have no direction: the surface holds them.
+            known = tangents.any(axis=1)
+            across, along = curve.rows[mine & known], curve.rows[mine & ~known]
+            parts.append(held_across(new[across], tangents[mine & known]))
+            parts.append(held_along(new[along], here.normals[along]))
         return Conditions.joined(parts)
 
     def _laid(self, points: Matrix, is_freed: Mask) -> tuple[Matrix, Matrix, Mask]:
