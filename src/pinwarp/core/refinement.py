@@ -35,7 +35,7 @@ from pinwarp.core.conditions import (
     held_along,
 )
 from pinwarp.core.errors import LandmarkError
-from pinwarp.core.jacobian import determinants, jacobians
+from pinwarp.core.fold_control import FoldControl
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.positions import as_positions
 from pinwarp.core.readiness import check_facing, starting_warp
@@ -64,9 +64,6 @@ SMALLEST_MEDIAN = 0.002
 WORTH_KEEPING = 1e-3
 # At least this share of the places must face as the destination does, rims aside.
 FACING_ALIKE = 0.5
-# No vertex may lose more volume than to this share of the median, or this share of its own.
-LEAST_VOLUME = 0.1
-OWN_VOLUME = 0.5
 # Stiffening around folds: by how much, to what, how far around, wider each time, how often.
 STIFFEN, STIFFEST = 4.0, 1e4
 REACH, WIDEN = 1.5, 1.35
@@ -282,7 +279,7 @@ class _Run:
         self.features = _features(source.diagonal, settings.smallest_feature or self.spacing)
         self.growth = abs(float(np.linalg.det(self.first.affine[1:]))) ** (1 / 3)
         self.size = self.growth * source.diagonal
-        self.folds = _FoldControl(
+        self.folds = FoldControl(
             self.first, np.vstack([source.vertices[source.on_surface], positions])
         )
         met = surface.closest(self.first.evaluate(positions))
@@ -358,25 +355,6 @@ class _Run:
         part = slice(0, len(met))
         carried = carried_normals(spline, self.places.positions[part], self.places.normals[part])
         return np.asarray(np.sum(carried * met.normals, axis=1))
-
-
-class _FoldControl:
-    """Says where a warp takes more volume than the landmarks' own warp may excuse."""
-
-    def __init__(self, first: Spline, judged: Matrix) -> None:
-        self._judged = judged
-        volumes = self._volumes(first)
-        # Handed alike: mirrored sets were refused. What the landmarks fold is theirs to mend.
-        usual = LEAST_VOLUME * abs(float(np.median(volumes)))
-        least = np.minimum(usual, OWN_VOLUME * volumes)
-        self._least = np.where(volumes <= 0, -np.inf, least)
-
-    def bad(self, spline: Spline) -> Matrix:
-        """Return the (b, 3) places of the source that lose too much."""
-        return self._judged[self._volumes(spline) < self._least]
-
-    def _volumes(self, spline: Spline) -> Matrix:
-        return determinants(jacobians(spline, self._judged))
 
 
 def _places_for(area: float, feature: float | None) -> int:
