@@ -33,7 +33,7 @@ def test_a_refined_session_is_shown_edited_undone_and_saved_without_loss(user, s
     for side in Side:
         assert len(user.window.viewports[side].layer.markers) == len(refined.landmarks)
     fitted = len(refined.refinement.source) - len(refined.pairs)
-    note = user.window.parts.warp.refinement_note
+    note = user.window.parts.refining.note.label
     assert note.isVisible()
     assert note.text() == f"Refined to the surface by {fitted} fitted pairs"
     assert overlay_misses(user, refined) < 0.01 < overlay_misses(user, plain)
@@ -41,7 +41,7 @@ def test_a_refined_session_is_shown_edited_undone_and_saved_without_loss(user, s
     user.drag_a_landmark()
     assert user.session.pairs != refined.pairs
     assert "out of date" in note.text()
-    assert "Refine again" in note.toolTip()
+    assert "Refine again" in user.window.parts.refining.note.toolTip()
     assert user.session.refinement == refined.refinement
     assert overlay_misses(user, replace(user.session, refinement=None)) < 0.01
 

@@ -54,11 +54,7 @@ def starting_warp(source: ArrayLike, destination: ArrayLike, penalty: float = 0.
     There are 3 pairs of landmarks, and a surface can be fitted from 4 on: place more.
     """
     places = as_positions(source, "source landmark")
-    if len(places) < FEWEST:
-        pairs = "is 1 pair" if len(places) == 1 else f"are {len(places) or 'no'} pairs"
-        raise LandmarkError(
-            f"There {pairs} of landmarks, and a surface can be fitted from {FEWEST} on: place more."
-        )
+    check_count(len(places))
     factor = factorise(places)
     if factor.duplicates:
         i, j, *_ = factor.duplicates[0]
@@ -82,6 +78,25 @@ def starting_warp(source: ArrayLike, destination: ArrayLike, penalty: float = 0.
             "the meshes first, or look for pairs that are swapped."
         )
     return spline
+
+
+def check_count(pairs: int) -> None:
+    """Say how many landmarks are missing, if any.
+
+    Raises
+    ------
+    LandmarkError
+        When they are fewer than four.
+
+    Examples
+    --------
+    >>> check_count(4)
+    """
+    if pairs < FEWEST:
+        words = "is 1 pair" if pairs == 1 else f"are {pairs or 'no'} pairs"
+        raise LandmarkError(
+            f"There {words} of landmarks, and a surface can be fitted from {FEWEST} on: place more."
+        )
 
 
 def check_facing(cosines: Matrix, destination: Mesh, least: float) -> None:

@@ -35,6 +35,7 @@ from pinwarp.core.conditions import (
     held_along,
 )
 from pinwarp.core.errors import LandmarkError
+from pinwarp.core.features import FEWEST_PLACES, levels_to, places_for
 from pinwarp.core.fold_control import FoldControl
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.positions import as_positions
@@ -46,13 +47,6 @@ from pinwarp.core.surface import Places, Surface, carried_normals
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-# Without a smallest feature given, so many places are spread; never fewer or more than these.
-PLACES = 1200
-FEWEST_PLACES, MOST_PLACES = 150, 3000
-# The first level's wavelength as a share of the source's diagonal, and from level to level.
-COARSEST = 0.5
-SHRINK = 0.7
-NEXT = 1.1
 # Turns at the last level, unless the largest move falls below this share of the spacing.
 TURNS = 8
 SETTLED = 0.02
@@ -230,7 +224,8 @@ def refine(
     levels: list[Level] = []
     for number, feature in enumerate(run.features, 1):
         for turn in range(TURNS if feature == run.features[-1] else 1):
-            progress((number - 1 + turn / TURNS) / len(run.features), "fitting the surface")
+            words = f"level {number} of {len(run.features)}"
+            progress((number - 1 + turn / TURNS) / len(run.features), words)
             if run.turn(feature, is_last=turn == TURNS - 1):
                 break
         level = Level(
@@ -272,11 +267,11 @@ class _Run:
         self.destination = as_positions(destination_landmarks, "destination landmark")
         self.surface, self.tolerance = surface, settings.landmark_tolerance
         self.area = float(triangle_areas(source).sum())
-        count = _places_for(self.area, settings.smallest_feature)
+        count = places_for(self.area, settings.smallest_feature)
         positions, triangles = spread_places(source, count, self.first.source)
         self.places = Surface(source).at(triangles, positions)
         self.spacing = float(np.sqrt(self.area / count))
-        self.features = _features(source.diagonal, settings.smallest_feature or self.spacing)
+        self.features = levels_to(settings.smallest_feature or self.spacing, source.diagonal)
         self.growth = abs(float(np.linalg.det(self.first.affine[1:]))) ** (1 / 3)
         self.size = self.growth * source.diagonal
         self.folds = FoldControl(
@@ -355,21 +350,3 @@ class _Run:
         part = slice(0, len(met))
         carried = carried_normals(spline, self.places.positions[part], self.places.normals[part])
         return np.asarray(np.sum(carried * met.normals, axis=1))
-
-
-def _places_for(area: float, feature: float | None) -> int:
-    """Return how many places it takes to bend features of a size."""
-    if feature is None:
-        return PLACES
-    # As many as a level of that wavelength uses, but no more than resolve it where it is small.
-    wanted = min(4 * area / feature**2, max(PLACES, area / feature**2))
-    return int(np.clip(np.ceil(wanted), FEWEST_PLACES, MOST_PLACES))
-
-
-def _features(diagonal: float, smallest: float) -> tuple[float, ...]:
-    """Return the wavelengths of the levels."""
-    features = [max(COARSEST * diagonal, smallest)]
-    # A level just above the last one would only be done twice.
-    while features[-1] * SHRINK > NEXT * smallest:
-        features.append(features[-1] * SHRINK)
-    return (*features, smallest) if features[-1] > smallest else tuple(features)

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from qtpy.QtCore import QEvent, QObject, Qt, Signal
-from qtpy.QtWidgets import QApplication
+from qtpy.QtCore import QObject, Qt, Signal
 
+from pinwarp.gui.tasks.passing import Passing
 from pinwarp.session.editor import Editor
 from pinwarp.session.session import Session
-
-_ACTS = {QEvent.Type.MouseButtonPress, QEvent.Type.MouseButtonDblClick}
-_KEYS = {QEvent.Type.ShortcutOverride, QEvent.Type.KeyPress}
-_LEAVES = {QEvent.Type.WindowDeactivate, QEvent.Type.ApplicationDeactivate}
 
 
 class PassingPreview(QObject):
@@ -31,8 +27,9 @@ class PassingPreview(QObject):
     def __init__(self, editor: Editor, parent: QObject, held: Qt.Key | None = None) -> None:
         super().__init__(parent)
         self._editor = editor
-        self._held = held
         self._session: Session | None = None
+        self._passing = Passing(self, held)
+        self._passing.ended.connect(self._on_ended)
         editor.session_changed.connect(self._on_session)
 
     def shut_down(self) -> None:
@@ -47,18 +44,16 @@ class PassingPreview(QObject):
 
     def show(self, session: Session) -> None:
         """Show a session, in place of the one shown before."""
-        if self._session is None:
-            # Only now: Python looking at every event has its price.
-            QApplication.instance().installEventFilter(self)
+        self._passing.begin()
         self._session = session
         self._editor.preview(session)
 
     def end(self) -> None:
         """Put back what is committed, unless something else has taken its place already."""
-        if self._session is None:
-            return
+        self._passing.end()
+
+    def _on_ended(self) -> None:
         shown, self._session = self._session, None
-        QApplication.instance().removeEventFilter(self)
         if self._editor.session is shown:
             self._editor.cancel_preview()
         self.ended.emit()
@@ -66,17 +61,3 @@ class PassingPreview(QObject):
     def _on_session(self, session: Session) -> None:
         if self._session is not None and session is not self._session:
             self.end()
-
-    def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
-        """End it before what the user does is done; the held key is kept from everyone else."""
-        kind = event.type()
-        if kind in _KEYS or kind == QEvent.Type.KeyRelease:
-            if event.key() == self._held:
-                if kind == QEvent.Type.KeyRelease and not event.isAutoRepeat():
-                    self.end()
-                return True
-            if kind in _KEYS:
-                self.end()
-        elif kind in _ACTS or (self._held is not None and kind in _LEAVES):
-            self.end()
-        return False

@@ -19,7 +19,6 @@ from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.warp_figures import figures_table
 from pinwarp.session.warp.component_words import applied_in_words
-from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date, refinement_in_words
 
 COMPONENT_ACTIONS = {part: f"apply_{part.name.lower()}" for part in Components}
 _ACTIONS = {
@@ -60,8 +59,7 @@ class WarpPresenter(Capability):
         self._quality = quality
         self._say = say
         self.note = QLabel()
-        self.refinement_note = QLabel()
-        self.notes = (self.refinement_note, self.note)
+        self.notes = (self.note,)
         self.player = BlendPlayer(editor, parent)
         self._play_action = Action(
             "play_blend",
@@ -78,7 +76,7 @@ class WarpPresenter(Capability):
             "copy_figures",
             "&Copy Figures",
             self._copy,
-            at="Warp.41",
+            at="Warp.51",
             tip="The warp taken apart, as a table",
             possible=lambda: quality.quality is not None,
         )
@@ -123,9 +121,6 @@ class WarpPresenter(Capability):
         else:
             applied = applied_in_words(session.settings)
             self.note.setText("" if whole else f"Shown and exported: {applied}")
-        # What was fitted is no landmark: neither the table nor the markers tell of it.
-        self.refinement_note.setText(refinement_in_words(session))
-        self.refinement_note.setToolTip(OUT_OF_DATE if is_out_of_date(session) else "")
 
     def _on_view(self, _changed: object = None) -> None:
         self.panel.show_view(self._editor.view)

@@ -18,6 +18,8 @@ from pinwarp.gui.drawn.surfaces import Surfaces
 from pinwarp.gui.scene.drawables import Drawable, Motion, Overlay, OverlayWarp
 from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.gui.views.scenes import Scenes
+from pinwarp.io.refinement_record import RefinementRecord
+from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.quality import Quality, quality_of
 from pinwarp.session.session import Session
@@ -103,6 +105,8 @@ class Warps(Capability):
         self._shaded: _Warps = (None, None)
         self._overlay: _Warps = (None, None)
         self._is_moving = False
+        # What stands in for the session's own refinement: a value, or none at all.
+        self._instead: tuple[RefinementRecord | None] | None = None
         editor.session_changed.connect(self._ask)
         self._ask()
 
@@ -111,13 +115,23 @@ class Warps(Capability):
         self._worker.shut_down()
         self._editor.session_changed.disconnect(self._ask)
 
+    def show_instead(self, refined: RefinementRecord | None) -> None:
+        """Show another refinement than the session's own, or None, as far as it belongs to it."""
+        self._instead = (refined,)
+        self._ask()
+
+    def show_own(self) -> None:
+        """Show the session as it is again."""
+        self._instead = None
+        self._ask()
+
     @property
     def is_settled(self) -> bool:
         """Whether the warp is that of the session as it is."""
         if not self._worker.is_idle or self._asked is None:
             return False
         asked, previewed = self._asked
-        current = WarpInputs.of(self._editor.session, asked.stand_in)
+        current = WarpInputs.of(self._shown_session(), asked.stand_in)
         return asked == current and previewed == self._editor.is_previewing
 
     def rested(self, session: Session) -> Session:
@@ -157,12 +171,18 @@ class Warps(Capability):
 
     def _inputs(self) -> WarpInputs:
         """Return what the warp depends on, with a stand-in where drawing in full is slow."""
-        session = self._editor.session
+        session = self._shown_session()
         mesh = session.mesh(Side.SOURCE)
         stand_in = (
             self._surfaces.of(mesh).stand_in if mesh is not None and self._is_slow() else None
         )
         return WarpInputs.of(session, stand_in)
+
+    def _shown_session(self) -> Session:
+        session = self._editor.session
+        if self._instead is None:
+            return session
+        return edits.set_refinement(session, *self._instead)
 
     def _warp(self, request: _Request) -> _Shaded:
         """Solve and shade; runs in the worker."""

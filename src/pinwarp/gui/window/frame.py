@@ -52,8 +52,10 @@ class WindowFrame(QMainWindow):
         self.viewports = {side: Viewport(side, self.surfaces) for side in Side}
         self.scenes = Scenes(self.viewports, self)
         self.jobs = SlowJob(self)
+        # Files need not wait for what takes minutes.
+        self.long_jobs = SlowJob(self)
         self.stepped = SteppedJob(self)
-        progress = JobProgress(self.statusBar(), (self.jobs, self.stepped))
+        progress = JobProgress(self.statusBar(), (self.jobs, self.long_jobs, self.stepped))
         self.progress, self.cancel = progress.bar, progress.cancel
         self.shortcuts: ShortcutOverlay | None = None
         self._fitted: list[QDockWidget] = []

@@ -78,7 +78,8 @@ class MainWindow(WindowFrame):
     @property
     def is_settled(self) -> bool:
         """Whether everything asked for is done and shown."""
-        idle = self.jobs.is_idle and self.stepped.is_idle and self.scenes.is_settled
+        jobs = (self.jobs, self.long_jobs, self.stepped)
+        idle = all(job.is_idle for job in jobs) and self.scenes.is_settled
         return idle and all(part.is_settled for part in self.parts)
 
     def closeEvent(self, event: QCloseEvent) -> None:
@@ -90,6 +91,7 @@ class MainWindow(WindowFrame):
         for signal in self._signals:
             signal.disconnect(self._on_change)
         self.jobs.shut_down()
+        self.long_jobs.shut_down()
         self.stepped.shut_down()
         for part in reversed(list(self.parts)):
             part.shut_down()

@@ -29,6 +29,7 @@ from pinwarp.gui.placing.bone_edits import BoneEdits
 from pinwarp.gui.placing.ghosts import Ghosts
 from pinwarp.gui.placing.guidance import Guidance
 from pinwarp.gui.placing.hand import Hand
+from pinwarp.gui.refining.presenter import RefiningPresenter
 from pinwarp.gui.table.presenter import TablePresenter
 from pinwarp.gui.tasks.file_tasks import FileTasks
 from pinwarp.gui.views.controls import ViewControls
@@ -92,6 +93,9 @@ class Parts:
             editor, self.warps, self.hand, self.ghosts, scenes, destination, frame
         )
         self.overlay = OverlayControls(editor, self.maps)
+        self.refining = RefiningPresenter(
+            editor, self.warps, self.maps, scenes, frame.long_jobs, say, frame
+        )
         self.findings = FindingsPresenter(
             editor,
             self.quality,

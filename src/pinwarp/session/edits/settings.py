@@ -7,6 +7,7 @@ from dataclasses import replace
 from pinwarp.core.components import Components
 from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import PenaltyConvention
+from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.session.session import Session
 
 __all__ = [
@@ -16,6 +17,7 @@ __all__ = [
     "set_convention",
     "set_penalty",
     "set_planar",
+    "set_refinement",
     "set_unit",
 ]
 
@@ -57,6 +59,11 @@ def set_blend(session: Session, blend: float) -> Session:
         When the blend is not from 0 to 1.
     """
     return _with(session, replace(session.settings, blend=blend))
+
+
+def set_refinement(session: Session, refinement: RefinementRecord | None) -> Session:
+    """Warp as a refinement does while it belongs to the session; None as the landmarks do."""
+    return replace(session, refinement=refinement)
 
 
 def set_unit(session: Session, unit: str) -> Session:

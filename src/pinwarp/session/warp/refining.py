@@ -16,7 +16,9 @@ from pinwarp.core.landmarks import Side, as_position, positions
 from pinwarp.core.lengths import rms
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.quality import leave_one_out
+from pinwarp.core.readiness import check_count
 from pinwarp.core.refinement import Level, Refinement, RefinementSettings, refine
+from pinwarp.core.spline import Spline
 from pinwarp.core.words import listed
 from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.session.session import Session
@@ -98,19 +100,77 @@ def refined_session(
     (True, True, True)
     """
     given = _Given.of(session, options or RefinementOptions())
+    _refuse_coincident(session)
     found = given.refine(told, progress)
-    source, destination = found.pairs
-    record = RefinementRecord(
-        source=tuple(as_position(place) for place in source),
-        destination=tuple(as_position(place) for place in destination),
-        smallest_feature=found.smallest_feature,
+    record = replace(
+        _record(session, found.spline, found.smallest_feature),
         landmark_tolerance=given.settings.landmark_tolerance,
         turn_destination=given.settings.turn_destination,
         places=found.places,
         folding=found.folding,
-        inputs=inputs_of(session),
     )
     return replace(session, refinement=record), found
+
+
+def record_at(session: Session, level: Level) -> RefinementRecord:
+    """Return a refinement that is under way as a level of it stands: to be looked at.
+
+    Parameters
+    ----------
+    session
+        What is refined.
+    level
+        The level.
+
+    Examples
+    --------
+    >>> from pinwarp.io.samples import sample_session
+    >>> from pinwarp.session.keeping.files import read_session
+    >>> session, seen = read_session(sample_session()), []
+    >>> _ = refined_session(
+    ...     session,
+    ...     RefinementOptions(smallest_feature=60.0),
+    ...     told=lambda level: seen.append(record_at(session, level)),
+    ... )
+    >>> [round(record.smallest_feature) for record in seen]
+    [225, 157, 110, 77, 60]
+    """
+    return _record(session, level.spline, level.feature)
+
+
+def why_not(session: Session, options: RefinementOptions | None = None) -> str:
+    """Say why a refinement cannot begin, and what to do about it; nothing where it can.
+
+    Told at a glance: what only fitting shows is not looked for.
+
+    Parameters
+    ----------
+    session
+        What is to be refined.
+    options
+        How.
+
+    Examples
+    --------
+    >>> why_not(Session())
+    'There is no source mesh: open the bone that is to be warped.'
+    """
+    try:
+        _Given.of(session, options or RefinementOptions())
+        check_count(len(session.pairs))
+    except PinwarpError as error:
+        return str(error)
+    return ""
+
+
+def _record(session: Session, spline: Spline, feature: float) -> RefinementRecord:
+    """Return what is kept of a spline that was fitted: where its places go."""
+    return RefinementRecord(
+        source=tuple(as_position(place) for place in spline.source),
+        destination=tuple(as_position(place) for place in spline.evaluate(spline.source)),
+        smallest_feature=feature,
+        inputs=inputs_of(session),
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,6 +247,7 @@ def verified(
     if options is None and session.refinement is not None:
         options = RefinementOptions.of(session.refinement)
     given = _Given.of(session, options or RefinementOptions())
+    _refuse_coincident(session)
     names = tuple(pair.name for pair in session.pairs)
     if len(names) < LEAST_PAIRS:
         raise PinwarpError(
@@ -236,7 +297,6 @@ class _Given:
                 "At an infinite penalty the warp is the affine fit, which nothing bends: lower "
                 "the penalty, or give the landmarks a tolerance of their own."
             )
-        _refuse_coincident(session)
         return cls(
             source,
             destination,

@@ -1,0 +1,1 @@
+"""Refine to surface: asked for in a panel, seen level by level, checked."""

@@ -1,0 +1,123 @@
+"""What is said about a refinement: under way, done, out of date, and checked."""
+
+from __future__ import annotations
+
+import html
+import math
+
+from pinwarp.core.refinement import Level
+from pinwarp.core.words import counted
+from pinwarp.gui.refining.fit import Fit
+from pinwarp.gui.style import theme
+from pinwarp.gui.style.lengths import format_length, format_number
+from pinwarp.io.refinement_record import RefinementRecord
+from pinwarp.session.warp.refining import Verification
+
+ABOUT = (
+    "Draws places all over the source to the destination's surface, large features first, and "
+    "slides them on it. Every landmark is met, unless it gets a tolerance."
+)
+NOT_REFINED = "Not refined: the warp is that of the landmarks alone."
+CANCELLED = "Cancelled: the warp is as it was."
+CHANGED = "Landmarks, a mesh or the penalty changed: the refinement was cancelled."
+CHECK_CHANGED = "Landmarks, a mesh or the penalty changed: the check was cancelled."
+CHECK_CANCELLED = "The check was cancelled."
+NOTHING_TO_COMPARE = "The warp is not refined: Ctrl+R refines it to the surface."
+STARTING = "Spreading places over the source"
+CHECKING = "Checking the refinement"
+BUSY = "A refinement or its check is under way already."
+TURN, TURN_BACK = "Turn It Round and Refine", "Refine Them as They Are"
+ALREADY_TURNED = "Taken the other way round, the surfaces face opposite ways: they fit as they are."
+
+
+def level_in_words(level: Level, unit: str) -> str:
+    """Say which level is drawn.
+
+    Examples
+    --------
+    >>> level_in_words(Level(3, 8, 42.13, None, 150, 150, 0, 0.1), "mm")
+    'Level 3 of 8: features larger than 42.1 mm'
+    """
+    feature = format_length(level.feature, unit, 3)
+    return f"Level {level.number} of {level.count}: features larger than {feature}"
+
+
+def refined_in_words(
+    refined: RefinementRecord, pairs: int, unit: str, fit: Fit | None, folds: int | None
+) -> str:
+    """Say what was fitted, and how.
+
+    Parameters
+    ----------
+    refined
+        A refinement in use.
+    pairs
+        How many landmarks take part.
+    unit
+        Of the session.
+    fit, folds
+        What was measured; None while it is not known.
+
+    Examples
+    --------
+    >>> record = RefinementRecord(((0, 0, 0),) * 16, ((0, 0, 0),) * 16, 6.5, places=13)
+    >>> refined_in_words(record, 4, "mm", Fit(record, 2.37, 0.264), 0)
+    'Refined: 12 of 13 places fitted, features larger than 6.5 mm. No folds.\
+ Mean distance 2.37 → 0.264 mm, fitted: it proves nothing.'
+    """
+    fitted = len(refined.source) - pairs
+    feature = format_length(refined.smallest_feature, unit, 3)
+    words = [
+        f"Refined: {fitted:,} of {counted(refined.places, 'place')} fitted, features larger than "
+        f"{feature}."
+    ]
+    if refined.landmark_tolerance > 0:
+        words.append(f"Landmark tolerance {format_length(refined.landmark_tolerance, unit, 3)}.")
+    if refined.folding:
+        words.append(
+            f"{counted(refined.folding, 'vertex', 'vertices')} would have folded, so that an "
+            "earlier step was kept: look at the landmarks there, or give them a tolerance."
+        )
+    if folds is not None:
+        words.append(
+            f"{counted(folds, 'folded vertex', 'folded vertices')}." if folds else "No folds."
+        )
+    if fit is not None and fit.before is not None and fit.after is not None:
+        before, after = format_number(fit.before), format_length(fit.after, unit, 3)
+        words.append(f"Mean distance {before} → {after}, fitted: it proves nothing.")
+    return " ".join(words)
+
+
+def worth_in_words(worth: Verification, unit: str) -> str:
+    """Say what a refinement is worth, in a sentence."""
+    if not worth.judged:
+        return "No landmark could be left out: see why below."
+    (rms_before, rms_after), (before, after) = worth.rms(), worth.median()
+    return (
+        f"Left out one by one, {worth.improved} of {counted(worth.judged, 'landmark')} "
+        f"{'is' if worth.improved == 1 else 'are'} missed by less: RMS {format_number(rms_before)} "
+        f"→ {format_length(rms_after, unit, 3)}, median {format_number(before)} → "
+        f"{format_length(after, unit, 3)}."
+    )
+
+
+def worth_as_html(worth: Verification, unit: str) -> str:
+    """Return a small table: by how much each landmark is missed, unrefined and refined."""
+    head = ("Left out", f"Before, {unit}", f"Refined, {unit}")
+    rows = [_row(head, "th")]
+    for name, before, after in zip(
+        worth.names, worth.before.tolist(), worth.after.tolist(), strict=True
+    ):
+        numbers = ("–" if math.isnan(x) else format_number(x) for x in (before, after))
+        rows.append(_row((name, *numbers), "td", worse=after > before))
+    problems = "".join(f"<p>{html.escape(problem)}</p>" for problem in worth.problems)
+    return f'<table cellspacing="0" cellpadding="2">{"".join(rows)}</table>{problems}'
+
+
+def _row(cells: tuple[str, ...], tag: str, *, worse: bool = False) -> str:
+    name, *numbers = (html.escape(cell).replace(" ", "&nbsp;") for cell in cells)
+    # Not by colour alone: a sign as well.
+    colour = f' style="color:{theme.WARNING_COLOUR}"' if worse else ""
+    right = [f'<{tag} align="right" style="padding-left:18px">{x}</{tag}>' for x in numbers]
+    sign = f"<td{colour}>&nbsp;{'worse' if worse else ''}</td>"
+    return f'<tr><{tag} align="left">{name}</{tag}>{"".join(right)}{sign}</tr>'
