@@ -24,7 +24,7 @@ from qtpy.QtWidgets import (
 
 from pinwarp.core.maps import MapKind, Range, SurfaceMap, must_be_relative
 from pinwarp.gui.maps.histogram import HistogramView
-from pinwarp.gui.maps.words import MEANINGS, TITLES, figure, note_of
+from pinwarp.gui.maps.words import TITLES, figure, meaning_of, note_of
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.colour_scale import ColourScale
 from pinwarp.session.judging.survey import Survey
@@ -154,7 +154,8 @@ class MapPanel(QWidget):
             The landmark that stands already where the next one helps most.
         """
         self.choice.setCurrentIndex(list(MapKind).index(view.map) + 1 if view.map else 0)
-        self.meaning.setText(MEANINGS[view.map])
+        fitted = survey is not None and survey.is_fitted
+        self.meaning.setText(meaning_of(view.map, fitted=fitted))
         found = survey.map if survey is not None and survey.kind is view.map else None
         missing = survey.missing if survey is not None and survey.kind is view.map else ""
         self.note.setText(missing)
@@ -176,7 +177,7 @@ class MapPanel(QWidget):
         self.histogram.show_map(found, scale)
         self.figures.setText(_table(found, unit))
         self.series.setText(
-            "Bars: source → destination, in the map's colours<br>"
+            f"Bars{' (fitted)' if fitted else ''}: source → destination, in the map's colours<br>"
             f'<span style="color:{theme.WARNING_COLOUR}">━</span> destination → source'
         )
         if suggestion is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import weakref
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -19,7 +19,7 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.gui.capability.action import Action, one_of
 from pinwarp.gui.capability.capability import Capability, Panel
 from pinwarp.gui.maps.panel import MapPanel
-from pinwarp.gui.maps.words import TITLES, note_of
+from pinwarp.gui.maps.words import MENU_WORDS, note_of, title_of
 from pinwarp.gui.placing.ghosts import Ghosts
 from pinwarp.gui.placing.hand import Hand
 from pinwarp.gui.scene.drawables import (
@@ -44,14 +44,6 @@ from pinwarp.session.view import ViewState
 from pinwarp.session.warp.result import WarpResult
 
 MAP_ACTIONS = {kind: f"map_{kind.name.lower() if kind else 'none'}" for kind in (None, *MapKind)}
-_ACTIONS = {
-    None: ("&No Map", "The warped source in one colour", 11),
-    MapKind.DISTANCE: ("&Distance to the Destination", "Where it misses", 21),
-    MapKind.VOLUME: ("&Volume Change", "Where it swells and shrinks", 22),
-    MapKind.LARGEST_STRETCH: ("&Largest Stretch", "In the direction that grows most", 23),
-    MapKind.SMALLEST_STRETCH: ("&Smallest Stretch", "In the direction that grows least", 24),
-    MapKind.UNCERTAINTY: ("&Uncertainty", "Where landmarks are missing", 25),
-}
 # Nearer to a suggested place than this share of the bone, a landmark counts as placed there.
 THERE = 1e-3
 
@@ -123,6 +115,7 @@ class MapPresenter(Capability):
         self._resting: WarpResult | None = None
         self._surveyed: _Surveyed | None = None
         self._asked: _Request | None = None
+        self._kept_ranges: dict[MapKind, Range] | None = None
         suggest = Action(
             "place_suggested",
             "Place at &Suggested Place",
@@ -185,7 +178,7 @@ class MapPresenter(Capability):
     # What the user asks for
 
     def _action_of(self, kind: MapKind | None) -> Action:
-        text, tip, place = _ACTIONS[kind]
+        text, tip, place = MENU_WORDS[kind]
         return Action(
             MAP_ACTIONS[kind],
             text,
@@ -334,7 +327,18 @@ class MapPresenter(Capability):
         survey, view = self.survey, self._editor.view
         if survey is None or survey.map is None or survey.kind is not view.map:
             return None
-        return ColourScale(survey.map.kind, view.map_range or survey.map.range)
+        kept = None if self._kept_ranges is None else self._kept_ranges.get(survey.map.kind)
+        return ColourScale(survey.map.kind, view.map_range or kept or survey.map.range)
+
+    def keep_ranges(self, kept: bool) -> None:
+        """Keep the colours' range as it is while warps are compared, or let it follow again."""
+        if kept == (self._kept_ranges is not None):
+            return
+        found = self.survey.map if self.survey is not None else None
+        self._kept_ranges = None
+        if kept:
+            self._kept_ranges = {} if found is None else {found.kind: found.range}
+        self._show()
 
     def _show(self) -> None:
         """Show the last survey as the view state wants it."""
@@ -354,10 +358,10 @@ class MapPresenter(Capability):
             return
         surveyed, scale = self._surveyed, self._scale()
         # While things move the overlay has moved on from under its colours.
-        if surveyed is not None and surveyed.request.result is self._resting:
+        if surveyed is not None and _is_of(surveyed.request.result, self._resting):
             if surveyed.levels is not None and scale is not None:
                 yield Colouring(surveyed.levels, scale.kind, scale.range)
-            if surveyed.folded is not None:
+            if surveyed.folded is not None and surveyed.request.result is self._resting:
                 yield surveyed.folded
         legend = self._legend(scale)
         if legend is not None and self._editor.view.overlay:
@@ -369,7 +373,7 @@ class MapPresenter(Capability):
             return None
         (low, high), found = scale.range, survey.map
         return Legend(
-            title=TITLES[found.kind],
+            title=title_of(found.kind, fitted=survey.is_fitted),
             note=note_of(found, self._editor.session.unit),
             kind=scale.kind,
             range=scale.range,
@@ -377,6 +381,16 @@ class MapPresenter(Capability):
             clipped=(found.lowest < low - 1e-6 * (high - low), found.highest > high * (1 + 1e-6)),
             fixed=view.map_range is not None,
         )
+
+
+def _is_of(surveyed: WarpResult, shown: WarpResult | None) -> bool:
+    """Whether a warp is the one shown, or differs in its refinement only.
+
+    From level to level the last colours stay until the next are there: else they would flicker.
+    """
+    if shown is None or surveyed is shown:
+        return surveyed is shown
+    return replace(surveyed.inputs, refinement=None) == replace(shown.inputs, refinement=None)
 
 
 def _folded_surface(survey: Survey) -> FoldedSurface | None:

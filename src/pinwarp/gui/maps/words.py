@@ -11,6 +11,15 @@ TITLES = {
     MapKind.SMALLEST_STRETCH: "Smallest stretch",
     MapKind.UNCERTAINTY: "Uncertainty of the warp",
 }
+# In the menu: what it is called there, in more words, and where it stands.
+MENU_WORDS = {
+    None: ("&No Map", "The warped source in one colour", 11),
+    MapKind.DISTANCE: ("&Distance to the Destination", "Where it misses", 21),
+    MapKind.VOLUME: ("&Volume Change", "Where it swells and shrinks", 22),
+    MapKind.LARGEST_STRETCH: ("&Largest Stretch", "In the direction that grows most", 23),
+    MapKind.SMALLEST_STRETCH: ("&Smallest Stretch", "In the direction that grows least", 24),
+    MapKind.UNCERTAINTY: ("&Uncertainty", "Where landmarks are missing", 25),
+}
 MEANINGS = {
     None: "Colour the warped source by how well it fits, how it is deformed, or how sure it is.",
     MapKind.DISTANCE: (
@@ -34,6 +43,35 @@ MEANINGS = {
         "foretell one another: largest where landmarks are far away."
     ),
 }
+
+# What was fitted does not judge itself, and leaving landmarks out tells of their own warp.
+_FITTED_TITLES = {
+    MapKind.DISTANCE: "Distance to the destination (fitted)",
+    MapKind.UNCERTAINTY: "Uncertainty of the landmarks' warp",
+}
+_FITTED_MEANINGS = {
+    MapKind.DISTANCE: "The warp was fitted to this surface: a small distance proves nothing.",
+    MapKind.UNCERTAINTY: "The refinement does not count here: the landmarks' own warp is judged.",
+}
+
+
+def title_of(kind: MapKind, *, fitted: bool) -> str:
+    """Return what a map is called.
+
+    Parameters
+    ----------
+    kind
+        Which.
+    fitted
+        Whether the warp was refined to the surface.
+    """
+    return _FITTED_TITLES.get(kind, TITLES[kind]) if fitted else TITLES[kind]
+
+
+def meaning_of(kind: MapKind | None, *, fitted: bool) -> str:
+    """Return what a map means, in sentences; parameters as of :func:`title_of`."""
+    more = _FITTED_MEANINGS.get(kind, "") if fitted and kind is not None else ""
+    return f"{MEANINGS[kind]} {more}".rstrip()
 
 
 def note_of(found: SurfaceMap, unit: str) -> str:

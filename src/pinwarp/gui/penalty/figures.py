@@ -19,15 +19,22 @@ from pinwarp.session.warp.result import WarpResult
 NO_FIGURE = "–"
 
 
+_LANDMARKS_ONLY = "; of the warp of the landmarks, not of the refined one"
+
+
 class FigureLabel(QLabel):
     """A number below its title."""
 
     def __init__(self, title: str, tip: str) -> None:
         super().__init__()
-        self._title = title
+        self._title, self._tip = title, tip
         self.setToolTip(tip)
         self.setMinimumWidth(self.fontMetrics().horizontalAdvance(f"{title} "))
         self.show_text(NO_FIGURE)
+
+    def show_more(self, tip: str) -> None:
+        """Say more in the tip."""
+        self.setToolTip(self._tip + tip)
 
     def show_text(self, text: str) -> None:
         """Show another number, formatted."""
@@ -54,6 +61,9 @@ class PenaltyFigures(QWidget):
 
     def show_result(self, result: WarpResult | None, unit: str) -> None:
         """Show residual and pairs of a warp."""
+        refined = result is not None and result.inputs.refinement is not None
+        for figure in (self.flexibility, self.left_out):
+            figure.show_more(_LANDMARKS_ONLY if refined else "")
         rms = tidy_residual(result)
         self.residual.show_text(NO_FIGURE if rms is None else format_length(rms, unit))
         self.pairs.show_text(str(len(result.inputs.source) if result is not None else 0))

@@ -227,6 +227,7 @@ class PenaltyPanel(QWidget):
             title = [f"RMS over {len(self._quality.inputs.source)} pairs"]
             title += [] if regular else ["by the regularising convention"]
             title += [] if self._quality.inputs.settings.is_whole else ["of the whole warp"]
+            title += [] if self._quality.inputs.refinement is None else ["not refined"]
             self.plot.show_curve(Plotted(curve, factor, unit, regular, ", ".join(title)))
         self._show_suggestion()
 

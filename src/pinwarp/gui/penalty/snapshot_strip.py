@@ -81,7 +81,11 @@ class Snapshot:
             return "applied part changed"
         if before.convention is not after.convention:
             return "convention changed"
-        return "" if replace(before, penalty=after.penalty) == after else "settings changed"
+        if replace(before, penalty=after.penalty) != after:
+            return "settings changed"
+        # A refinement belongs to one penalty: elsewhere nothing can be said of it.
+        refined_else = before.penalty == after.penalty and was.refinement != now.refinement
+        return "refinement changed" if refined_else else ""
 
     @property
     def title(self) -> str:

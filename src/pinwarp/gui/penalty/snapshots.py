@@ -141,7 +141,9 @@ class Snapshots(Capability):
     # since a strip that appears makes the views smaller
 
     def _show_next(self) -> None:
-        self._preview.show(edits.set_penalty(self._editor.committed, self._ahead[0]))
+        # A refinement belongs to one penalty: among the others it would not be a sweep.
+        unrefined = edits.set_refinement(self._editor.committed, None)
+        self._preview.show(edits.set_penalty(unrefined, self._ahead[0]))
 
     def _on_result(self, result: WarpResult, _at_rest: bool) -> None:
         session = self._preview.session

@@ -254,7 +254,8 @@ class RefiningPanel(QScrollArea):
     def _show_busy(self, busy: bool) -> None:
         for widget in (self.stage, self.bar, self.cancel):
             widget.setVisible(busy)
-        self.refine.setVisible(not busy)
+        for widget in (self.refine, self.state):
+            widget.setVisible(not busy)
         self._choices.setEnabled(not busy)
         self.cancel.setEnabled(busy)
 

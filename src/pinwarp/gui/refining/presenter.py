@@ -230,6 +230,7 @@ class RefiningPresenter(Capability):
 
     def _on_idle(self) -> None:
         self.panel.show_idle()
+        self._show_warp()
         self._show_state()
         self._renew_actions()
         self._measure()
@@ -252,6 +253,8 @@ class RefiningPresenter(Capability):
 
     def _show_warp(self) -> None:
         """Show the level that was reached, the landmarks' warp, or the session as it is."""
+        # By colour they can be compared only in one range.
+        self._maps.keep_ranges(self._without.is_on or not self.run.is_idle)
         if self._without.is_on:
             self._warps.show_instead(None)
         elif self.run.level is not None:

@@ -73,7 +73,7 @@ class RefiningRun(QObject):
     ) -> None:
         super().__init__(parent)
         self._editor, self._jobs, self._say = editor, jobs, say
-        self._relay = LevelRelay(self)
+        self._relay = LevelRelay(jobs, self)
         self._task: _Task | None = None
         self._found: RefinementRecord | None = None
         self.level: RefinementRecord | None = None
@@ -83,7 +83,6 @@ class RefiningRun(QObject):
     def shut_down(self) -> None:
         """Forget what is under way."""
         self._task = self._found = None
-        self._relay.let_go()
 
     @property
     def is_idle(self) -> bool:
@@ -124,7 +123,6 @@ class RefiningRun(QObject):
     def cancel(self) -> None:
         """Stop at the next turn, and keep the start."""
         self._jobs.cancel()
-        self._relay.let_go()
 
     def follow(self, session: Session) -> None:
         """Look at a session that was committed: what does not belong to it is given up."""
@@ -152,7 +150,6 @@ class RefiningRun(QObject):
     def _on_level(self, level: Level) -> None:
         task = self._task
         if task is None:
-            self._relay.let_go()
             return
         stage = words.level_in_words(level, task.session.unit)
         self.progressed.emit(stage, level.number / level.count)

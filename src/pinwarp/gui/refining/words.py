@@ -61,9 +61,9 @@ def refined_in_words(
     Examples
     --------
     >>> record = RefinementRecord(((0, 0, 0),) * 16, ((0, 0, 0),) * 16, 6.5, places=13)
-    >>> refined_in_words(record, 4, "mm", Fit(record, 2.37, 0.264), 0)
-    'Refined: 12 of 13 places fitted, features larger than 6.5 mm. No folds.\
- Mean distance 2.37 → 0.264 mm, fitted: it proves nothing.'
+    >>> print(refined_in_words(record, 4, "mm", Fit(record, 2.37, 0.264), 0))
+    Refined: 12 of 13 places fitted, features larger than 6.5 mm. No folds.
+    Mean distance 2.37 → 0.264 mm (fitted): it proves nothing.
     """
     fitted = len(refined.source) - pairs
     feature = format_length(refined.smallest_feature, unit, 3)
@@ -82,10 +82,11 @@ def refined_in_words(
         words.append(
             f"{counted(folds, 'folded vertex', 'folded vertices')}." if folds else "No folds."
         )
+    lines = [" ".join(words)]
     if fit is not None and fit.before is not None and fit.after is not None:
         before, after = format_number(fit.before), format_length(fit.after, unit, 3)
-        words.append(f"Mean distance {before} → {after}, fitted: it proves nothing.")
-    return " ".join(words)
+        lines.append(f"Mean distance {before} → {after} (fitted): it proves nothing.")
+    return "\n".join(lines)
 
 
 def worth_in_words(worth: Verification, unit: str) -> str:

@@ -288,7 +288,8 @@ COLUMNS: tuple[Column, ...] = (
     number_column(
         "left_out",
         "Left out",
-        "How far the destination lies from where the other pairs alone would put the landmark",
+        "How far the destination lies from where the other pairs alone would put the landmark; "
+        "a refinement is no part of that",
         _length_text,
         cell_tip=_left_out_tip,
         icon=_sign,

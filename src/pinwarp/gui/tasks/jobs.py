@@ -165,6 +165,11 @@ class SlowJob(QObject):
         """Ask the running job to stop at its next stage."""
         self._cancel.set()
 
+    @property
+    def is_cancelled(self) -> bool:
+        """Whether the running job was asked to stop; also for the worker."""
+        return self._cancel.is_set()
+
     def _on_finished(self, number: int, result: Any, error: Exception | None) -> None:
         if number not in self._handlers:
             # Shut down: Qt delivers what was on its way before the disconnection.

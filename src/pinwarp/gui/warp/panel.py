@@ -36,6 +36,7 @@ _GRIDS = {
     GridKind.PLANE_Z: "Plane across z",
 }
 TAKEN_APART = "The affine fit of the pairs, and how the full warp bends beyond it:"
+REFINED_APART = "The affine fit of the pairs, and how the refined warp bends beyond it:"
 
 
 class WarpPanel(QScrollArea):
@@ -176,7 +177,9 @@ class WarpPanel(QScrollArea):
         """Show what the warp does; None where there is none."""
         self._quality = quality
         unit = self._session.unit
-        self.sentence.setText(determined_in_words(quality) or TAKEN_APART)
+        refined = quality is not None and quality.inputs.refinement is not None
+        apart = REFINED_APART if refined else TAKEN_APART
+        self.sentence.setText(determined_in_words(quality) or apart)
         self.figures.setVisible(quality is not None)
         self.copy.setVisible(quality is not None)
         if quality is None:

@@ -9,7 +9,7 @@ from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.window.fault_note import FaultNote
 from pinwarp.gui.window.faults import Faults
-from pinwarp.gui.window.help_text import ABOUT, ABOUT_PENALTY, ABOUT_QUALITY
+from pinwarp.gui.window.help_text import ABOUT, ABOUT_PENALTY, ABOUT_QUALITY, ABOUT_REFINING
 
 
 class Help(Capability):
@@ -59,6 +59,12 @@ class Help(Capability):
                 "About the &Quality Figures",
                 lambda: dialogs.tell("About the quality figures", ABOUT_QUALITY),
                 at="Help.22",
+            ),
+            Action(
+                "about_refining",
+                "About &Refining",
+                lambda: dialogs.tell("About refining to the surface", ABOUT_REFINING),
+                at="Help.23",
             ),
             Action(
                 "copy_details",

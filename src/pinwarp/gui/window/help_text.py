@@ -38,3 +38,21 @@ even so makes a pair <b>suspect</b>; one that is large only because the landmark
 <p>Few pairs can hardly contradict one another. In trials with one wrong pair among 6 it was found
 in 3 % of the cases, among 12 in 91 %: with fewer than a dozen an empty list is no proof.</p>
 """
+
+ABOUT_REFINING = """
+<p><b>Refine to surface</b> (Ctrl+R) draws places all over the source to the destination's surface,
+large features first, and lets them slide on it; every landmark is met, or within its tolerance.
+Where the warp would fold it gets stiffer. Hold <b>R</b> to see the warp without the
+refinement.</p>
+<p>It needs both meshes and at least four pairs that do not lie in a plane. The refinement is kept
+with the session. Once a landmark, a mesh or the penalty changes, it is <b>out of date</b>: the
+warp is that of the landmarks until you refine again.</p>
+<p><b>What it does not tell.</b> The distance is what was fitted: a small one proves nothing. That
+the surfaces lie on one another does not mean that the right places do. <b>Check the refinement</b>
+refines again without each landmark in turn and measures how far it is then missed; a few may be
+missed by more. Where the destination was not scanned (beyond its rims) nothing is fitted, and the
+warp there is a guess. Leave-one-out errors, flexibility and uncertainty elsewhere are of the
+landmarks' warp.</p>
+<p>Landmarks that are a few millimetres off, or a refined warp that folds: try a <b>landmark
+tolerance</b>.</p>
+"""

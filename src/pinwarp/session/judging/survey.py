@@ -59,6 +59,11 @@ class Survey:
     size: float = 1.0
 
     @property
+    def is_fitted(self) -> bool:
+        """Whether the warp was fitted to the destination's surface."""
+        return self.result.inputs.refinement is not None
+
+    @property
     def findings(self) -> tuple[Finding, ...]:
         """The folds as facts that can be put in words, the largest first."""
         return tuple(patch.finding for patch in self.folds.patches) if self.folds else ()

@@ -147,7 +147,7 @@ def warp_figures(quality: Quality, unit: str) -> tuple[FigureRow, ...]:
         FigureRow(
             "Bending energy",
             _figures([*"xyz", "total"], [*quality.energy, quality.energy.sum()], unit, noise),
-            "Of the full warp at this penalty, in destination units squared per source unit",
+            f"Of the {_warp_of(quality)}, in destination units squared per source unit",
         ),
     )
 
@@ -172,6 +172,11 @@ def figures_table(quality: Quality, unit: str) -> str:
     for row in warp_figures(quality, unit):
         rows += [(row.title, x.name, numeral(f"{x.value:.10g}"), x.unit) for x in row.figures]
     return "".join(csv_line(row, "\t") for row in rows)
+
+
+def _warp_of(quality: Quality) -> str:
+    refined = quality.inputs.refinement is not None
+    return "refined warp, fitted places included" if refined else "full warp at this penalty"
 
 
 def _noise(quality: Quality) -> float:
