@@ -7,6 +7,7 @@ import math
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtGui import QPalette
 from qtpy.QtWidgets import (
+    QApplication,
     QCheckBox,
     QFrame,
     QHBoxLayout,
@@ -49,6 +50,7 @@ class RefiningPanel(QScrollArea):
     def __init__(self, without: Action, remove: Action, check: Action, refine_key: str) -> None:
         super().__init__()
         self._range: FeatureRange | None = None
+        self._is_busy = False
         self.feature = LengthField(
             "Smallest feature",
             "Automatic",
@@ -75,10 +77,12 @@ class RefiningPanel(QScrollArea):
         self.turned = QCheckBox("One mesh is inside out: take it the other way round")
         self.refine = QPushButton()
         palette = self.refine.palette()
-        palette.setColor(QPalette.ColorRole.Button, palette.color(QPalette.ColorRole.Highlight))
-        ink = palette.color(QPalette.ColorRole.HighlightedText)
-        palette.setColor(QPalette.ColorGroup.Active, QPalette.ColorRole.ButtonText, ink)
-        palette.setColor(QPalette.ColorGroup.Inactive, QPalette.ColorRole.ButtonText, ink)
+        for group in (QPalette.ColorGroup.Active, QPalette.ColorGroup.Inactive):
+            for role, like in (
+                (QPalette.ColorRole.Button, QPalette.ColorRole.Highlight),
+                (QPalette.ColorRole.ButtonText, QPalette.ColorRole.HighlightedText),
+            ):
+                palette.setColor(group, role, palette.color(group, like))
         self.refine.setPalette(palette)
         self.refine.setToolTip(f"Fit the warp to the whole surface ({refine_key})")
         self.bar = QProgressBar()
@@ -252,6 +256,10 @@ class RefiningPanel(QScrollArea):
         self._show_busy(False)
 
     def _show_busy(self, busy: bool) -> None:
+        if self.isAncestorOf(QApplication.focusWidget() or self) and busy != self._is_busy:
+            # Else the keyboard would go to whatever stands next: R is then typed into a field.
+            self.setFocus()
+        self._is_busy = busy
         for widget in (self.stage, self.bar, self.cancel):
             widget.setVisible(busy)
         for widget in (self.refine, self.state):

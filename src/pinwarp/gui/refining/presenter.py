@@ -224,9 +224,10 @@ class RefiningPresenter(Capability):
         self._checked = checked
 
     def _on_refused(self, error: Exception) -> None:
-        self._show_problem(error)
         if not isinstance(error, PinwarpError):
+            self._show_problem(PinwarpError(words.FAILED))
             raise error
+        self._show_problem(error)
 
     def _on_idle(self) -> None:
         self.panel.show_idle()
@@ -270,6 +271,9 @@ class RefiningPresenter(Capability):
             self._features = None
         elif self._features is None or self._features[0] is not mesh:
             self._features = (mesh, FeatureRange.of(mesh))
+            # What suited another bone may be miles on this one.
+            self.panel.show_options(RefinementOptions())
+            self._shown_options = None
         features = None if self._features is None else self._features[1]
         self.panel.show_usual(features, session.settings.penalty, session.unit)
         refined = session.refinement

@@ -136,7 +136,7 @@ class RefiningRun(QObject):
 
     def drawn(self, refinement: RefinementRecord | None) -> None:
         """Say what is on the screen: the next level waits for the last."""
-        if refinement is not None and refinement is self.level:
+        if refinement is not None and refinement == self.level:
             self._relay.drawn()
 
     # What comes from the worker
