@@ -31,7 +31,7 @@ from pinwarp.session.judging.survey import Survey
 from pinwarp.session.session import Session
 from pinwarp.session.warp.refined import OUT_OF_DATE, refinement_in_use
 from pinwarp.session.warp.refining import RefinementOptions, why_not
-from pinwarp.session.warp.solver import WarpResult
+from pinwarp.session.warp.result import WarpResult
 
 
 class RefiningPresenter(Capability):
