@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
 from pinwarp.core.errors import LandmarkError, PinwarpError
+from pinwarp.core.groups import Curve, Handle, Patch
 from pinwarp.core.landmarks import Landmark, LandmarkState, Role, Side
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.settings import WarpSettings
@@ -414,6 +415,11 @@ class EditingMachine(RuleBasedStateMachine):
 
     @rule()
     def swap(self):
+        groups = self.editor.session.groups
+        if any(isinstance(group, Patch) or not group.is_drawn for group in groups):
+            with pytest.raises(LandmarkError, match="cannot change sides"):
+                edits.swap_sides(self.editor.session)
+            return
         swapped = edits.swap_sides(self.editor.session)
         assert edits.swap_sides(swapped) == self.editor.session
         self.commit(swapped, "swap")
@@ -499,6 +505,82 @@ class EditingMachine(RuleBasedStateMachine):
         self.commit(edits.reorder(before, self.several(data), row), "reorder")
         assert set(self.editor.session.landmarks) == set(before.landmarks)
 
+    def a_group(self, data, kind=(Curve, Patch)):
+        found = [x.name for x in self.editor.session.groups if isinstance(x, kind)]
+        return data.draw(st.sampled_from(found)) if found else None
+
+    @rule(data=st.data(), name=names, is_closed=st.booleans())
+    def draw_curve(self, data, name, is_closed):
+        """Through places, some of which are landmarks."""
+        here = self.editor.session
+        places = data.draw(st.lists(coordinates, min_size=3, max_size=4, unique=True))
+        handles = [Handle(place) for place in places]
+        anchors = [x for x in here.landmarks if x.source is not None]
+        if anchors:
+            one = data.draw(st.sampled_from(anchors))
+            handles[data.draw(st.integers(0, 2))] = Handle(one.source, one.destination, one.name)
+        self.add(name, lambda: Curve(name, tuple(handles), is_closed, 3))
+
+    @rule(data=st.data(), name=names, points=st.lists(coordinates, max_size=3))
+    def spread_patch(self, data, name, points):
+        self.add(name, lambda: Patch(name, tuple(points), self.a_group(data, Curve) or ""))
+
+    def add(self, name, make):
+        here = self.editor.session
+        if here.group(name) is not None:
+            return
+        try:
+            group = make()
+        except LandmarkError:
+            assert name != " ".join(name.splitlines())
+            return
+        self.commit(replace(here, groups=(*here.groups, group)), "group")
+
+    @rule(data=st.data(), side=sides, position=coordinates)
+    def move_handle(self, data, side, position):
+        if (name := self.a_group(data, Curve)) is None:
+            return
+        moved = edits.move_handle(self.editor.session, name, 1, side, position)
+        assert moved.group(name).handles[1].position(side) == position
+        self.commit(moved, "move handle")
+
+    @rule(data=st.data(), place=coordinates)
+    def accept_or_take_back(self, data, place):
+        if (name := self.a_group(data, Curve)) is None:
+            return
+        curve = self.editor.session.group(name)
+        if curve.is_drawn:
+            self.commit(edits.undraw_curve(self.editor.session, name), "take back")
+            return
+        drawn = edits.accept_curve(self.editor.session, name, [place] * len(curve.handles))
+        assert drawn.group(name).is_drawn
+        self.commit(drawn, "accept")
+
+    @rule(data=st.data(), source=coordinates, destination=coordinates)
+    def pin(self, data, source, destination):
+        name = self.a_group(data)
+        if name is None or not self.editor.session.group(name).count:
+            return
+        pinned, mark = edits.pin_point(self.editor.session, name, 0, source, destination)
+        assert pinned.landmark(mark).is_pair
+        assert 0 in pinned.group(name).excluded
+        self.commit(pinned, "pin")
+
+    @rule(data=st.data(), new_name=names)
+    def rename_group(self, data, new_name):
+        if (name := self.a_group(data)) is None:
+            return
+        try:
+            self.commit(edits.rename_group(self.editor.session, name, new_name), "rename group")
+        except LandmarkError:
+            taken = self.editor.session.group(new_name.strip()) is not None
+            assert taken or new_name != " ".join(new_name.splitlines())
+
+    @rule(data=st.data())
+    def remove_group(self, data):
+        if (name := self.a_group(data)) is not None:
+            self.commit(edits.remove_groups(self.editor.session, [name]), "remove group")
+
     @rule(penalty=st.one_of(st.floats(0, 1e6), st.just(math.inf)))
     def penalise(self, penalty):
         self.commit(edits.set_penalty(self.editor.session, penalty), "penalty")
@@ -550,6 +632,19 @@ class EditingMachine(RuleBasedStateMachine):
     def names_are_unique(self):
         found = [landmark.name for landmark in self.editor.session.landmarks]
         assert len(found) == len(set(found))
+        groups = [group.name for group in self.editor.session.groups]
+        assert len(groups) == len(set(groups))
+
+    @invariant()
+    def handles_at_landmarks_are_where_these_are(self):
+        here = self.editor.session
+        for group in here.groups:
+            for handle in group.anchors if isinstance(group, Curve) else ():
+                landmark = here.landmark(handle.landmark)
+                assert (handle.source, handle.destination) == (
+                    landmark.source,
+                    landmark.destination,
+                )
 
     def teardown(self):
         end = self.editor.session

@@ -74,7 +74,8 @@ class Curve:
     Raises
     ------
     LandmarkError
-        When the name is empty, or there are too few handles.
+        When the name is empty, there are too few handles, or a point is excluded that is not
+        there.
 
     Examples
     --------
@@ -92,7 +93,7 @@ class Curve:
     drawn: bool = False
 
     def __post_init__(self) -> None:
-        check_group(self.name, self.count)
+        check_group(self.name, self.count, self.excluded)
         least = 3 if self.is_closed else 2
         if len(self.handles) < least:
             kind = "closed curve" if self.is_closed else "curve"
@@ -134,7 +135,7 @@ class Patch:
     Raises
     ------
     LandmarkError
-        When the name is empty.
+        When the name is empty, or a point is excluded that is not there.
     """
 
     name: str
@@ -144,7 +145,7 @@ class Patch:
     excluded: frozenset[int] = frozenset()
 
     def __post_init__(self) -> None:
-        check_group(self.name, self.count)
+        check_group(self.name, self.count, self.excluded)
         if self.inside is not None:
             object.__setattr__(self, "inside", as_position(self.inside))
 
@@ -208,7 +209,7 @@ def moved_group(group: Group, side: Side, move: Callable[[Sequence[Position]], M
     return replace(group, handles=handles)
 
 
-def check_group(name: str, count: int) -> None:
+def check_group(name: str, count: int, excluded: frozenset[int] = frozenset()) -> None:
     """Raise a LandmarkError where a group cannot be called so, or have so many points."""
     if not name.strip():
         raise LandmarkError("A curve or patch needs a name.")
@@ -216,3 +217,5 @@ def check_group(name: str, count: int) -> None:
         raise LandmarkError(f"{name!r}: a name is one line, without blanks around it.")
     if not 0 <= count <= MOST_POINTS:
         raise LandmarkError(f"{name}: {count:,} points; choose from 0 to {MOST_POINTS:,}.")
+    if beyond := [number for number in excluded if not 0 <= number < count]:
+        raise LandmarkError(f"{name} has no point {min(beyond) + 1} that could be excluded.")

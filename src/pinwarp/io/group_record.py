@@ -66,6 +66,7 @@ def group_lines(groups: Sequence[Group], slid: SlidRecord | None) -> Iterator[tu
     >>> list(group_lines([Patch("shaft", ((1.0, 2.0, 3.0),))], None))
     [('patch', 'points=1 name=shaft')]
     """
+    slid = slid if _belongs(slid, groups) else None
     for group in groups:
         if isinstance(group, Curve):
             words = [f"closed={int(group.is_closed)}", f"points={group.count}"]
@@ -88,7 +89,9 @@ def group_lines(groups: Sequence[Group], slid: SlidRecord | None) -> Iterator[tu
 
 def group_rows(groups: Sequence[Group], slid: SlidRecord | None) -> Iterator[GroupRow]:
     """Return the rows below the landmarks: of each group its handles, then its points."""
-    rest = iter(zip(slid.source, slid.destination, strict=True)) if slid is not None else None
+    rest = None
+    if slid is not None and _belongs(slid, groups):
+        rest = iter(zip(slid.source, slid.destination, strict=True))
     for group in groups:
         if isinstance(group, Curve):
             for number, handle in enumerate(group.handles, 1):
@@ -113,6 +116,15 @@ def group_rows(groups: Sequence[Group], slid: SlidRecord | None) -> Iterator[Gro
             destination = next(rest)[1] if rest is not None and enabled else None
             name = f"{group.name} {number + 1}"
             yield GroupRow(GroupRole.SURFACE, name, enabled, place, destination)
+
+
+def _belongs(slid: SlidRecord | None, groups: Sequence[Group]) -> bool:
+    """Whether so many points as had come to rest are there: a count may have changed since."""
+    return slid is not None and len(slid.source) == _used(groups)
+
+
+def _used(groups: Sequence[Group]) -> int:
+    return sum(group.count - len(group.excluded) for group in groups)
 
 
 def groups_of(
@@ -157,8 +169,12 @@ def groups_of(
     destination: list[Position | None] = []
     for key, text in _joined(lines):
         if key == "slid":
+            if slid_text is not None:
+                raise ValueError("slid is given twice")
             slid_text = text
             continue
+        if key == "patch_around":
+            raise ValueError(f"there is no patch inside the curve {shortened(text)}")
         values = _values(key, text)
         name, count = values["name"], _count(values, key)
         if name in names:
@@ -168,7 +184,7 @@ def groups_of(
             handles = _numbered(of_group.pop((GroupRole.HANDLE, name), {}), None, name)
             points = of_group.pop((GroupRole.CURVE, name), {})
             groups.append(_curve(name, count, values, handles))
-            own = [points[n] for n in sorted(points)]
+            own = _used_rows(groups[-1], points) if points else []
         else:
             own = _numbered(of_group.pop((GroupRole.SURFACE, name), {}), count, name)
             groups.append(_patch(name, values, own))
@@ -184,7 +200,7 @@ def groups_of(
         slid = SlidRecord(
             tuple(source), tuple(destination), values.get("inputs", ""), _number(values, "method")
         )
-        if len(source) != sum(group.count - len(group.excluded) for group in groups):
+        if len(source) != _used(groups):
             raise ValueError("some of the points that slid are missing")
     return tuple(groups), slid
 
@@ -241,6 +257,16 @@ def _numbered(rows: Mapping[int, GroupRow], count: int | None, name: str) -> lis
     return [rows[number] for number in range(1, wanted + 1)]
 
 
+def _used_rows(group: Group, rows: Mapping[int, GroupRow]) -> list[GroupRow]:
+    """Return the rows of the points of a curve, which must be those that take part."""
+    for number in rows:
+        if number > group.count:
+            raise ValueError(f"{shortened(group.name)} has no point {number}")
+        if number - 1 in group.excluded:
+            raise ValueError(f"point {number} of {shortened(group.name)} is excluded")
+    return [rows[number] for number in sorted(rows)]
+
+
 def _placed(row: GroupRow) -> Position:
     if row.source is None:
         raise ValueError(f"{shortened(row.name)} has no position on the source")
@@ -256,7 +282,7 @@ def _curve(name: str, count: int, values: Mapping[str, str], rows: Sequence[Grou
         drawn = values.get("destination") == "drawn"
         return Curve(name, handles, values["closed"] == "1", count, excluded, drawn)
     except LandmarkError as error:
-        raise ValueError(str(error)) from None
+        raise ValueError(f"the curve {error}") from None
 
 
 def _patch(name: str, values: Mapping[str, str], rows: Sequence[GroupRow]) -> Patch:
@@ -266,10 +292,8 @@ def _patch(name: str, values: Mapping[str, str], rows: Sequence[GroupRow]) -> Pa
         if len(numbers) != 3:
             raise ValueError(f"inside of {shortened(name)} is no position")
         inside = (numbers[0], numbers[1], numbers[2])
-    return Patch(
-        name,
-        tuple(map(_placed, rows)),
-        values.get("around", ""),
-        inside,
-        frozenset(number for number, row in enumerate(rows) if not row.enabled),
-    )
+    excluded = frozenset(number for number, row in enumerate(rows) if not row.enabled)
+    try:
+        return Patch(name, tuple(map(_placed, rows)), values.get("around", ""), inside, excluded)
+    except LandmarkError as error:
+        raise ValueError(f"the patch {error}") from None

@@ -110,7 +110,7 @@ def read_header(path: str | Path, lines: Sequence[str], separator: str) -> list[
     found = []
     for number, line in enumerate(lines, 1):
         line = line.rstrip("\r\n")
-        text = _header_text(line, separator, mangled or line.startswith('"#'))
+        text = _header_text(line, separator, mangled)
         if text.startswith("#"):
             entry = text.removeprefix("#").strip()
             key, colon, value = entry.partition(":")
@@ -140,11 +140,12 @@ def read_header(path: str | Path, lines: Sequence[str], separator: str) -> list[
 
 def _header_text(line: str, separator: str, mangled: bool) -> str:
     """Undo what a spreadsheet does to a header line: quotes, and separators at its end."""
-    if not mangled:
+    if not mangled and not line.startswith('"#'):
         return line.strip()
     # It took commas in the text for separators, and wrote its own in their place.
-    cells = next(csv.reader([line], delimiter=separator), [])
-    return ",".join(cells).rstrip(",").strip()
+    text = ",".join(next(csv.reader([line], delimiter=separator), []))
+    # Where none did, a comma at the end belongs to the text.
+    return (text.rstrip(",") if mangled else text).strip()
 
 
 def read_values(

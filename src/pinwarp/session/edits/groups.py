@@ -96,11 +96,12 @@ def rename_group(session: Session, name: str, new_name: str) -> Session:
     Raises
     ------
     LandmarkError
-        When the new name is empty or taken.
+        When there is no such group, or the new name is empty or taken.
     """
     new_name = new_name.strip()
     if new_name == name:
         return session
+    _existing(session, name)
     _check_free(session, new_name)
     groups = (
         replace(group, around=new_name)
