@@ -11,17 +11,15 @@ from tests.core.bones import bone, landmarks, shape
 
 from pinwarp.core.curves import PathFinder
 from pinwarp.core.errors import LandmarkError
+from pinwarp.core.gathering import course_of, gathered, with_points_over
 from pinwarp.core.groups import (
     MOST_POINTS,
     Curve,
     Handle,
     Patch,
     anchored,
-    course_of,
-    gathered,
     moved_group,
     renamed_anchors,
-    with_points_over,
 )
 from pinwarp.core.landmarks import Landmark, Side, as_position
 from pinwarp.core.surface import Surface
@@ -53,9 +51,11 @@ def along(path, points):
         off = np.linalg.norm(corners[:-1] + shares[:, None] * ways - point, axis=1)
         at = np.concatenate([[0.0], np.cumsum(lengths)])[:-1] + shares * lengths
         # A path may come near itself: points follow one another.
-        on_it = np.flatnonzero((off < 1e-6) & (at >= last - 1e-6))
-        assert len(on_it), "the point is on the path"
-        last = float(at[on_it[0]])
+        off[at < last - 1e-6] = np.inf
+        # It cuts corners of the surface that the point is laid on.
+        assert off.min() < 0.2
+        # Where it closes, the end is the beginning.
+        last = float(at[np.flatnonzero(off <= off.min() + 1e-9)[0]])
         found.append(last)
     return np.array(found), float(lengths.sum())
 
@@ -87,8 +87,9 @@ def test_points_of_an_open_curve_stand_at_even_distances_from_end_to_end(seed, h
     assert len(course.points) == count
     assert course.spans == (course.points,)
     np.testing.assert_allclose([course.points[0], course.points[-1]], [places[0], places[-1]])
+    assert FINDER.surface.index.distances(course.points).max() < 1e-9
     at, length = along(course.path, course.points)
-    np.testing.assert_allclose(at, np.linspace(0, length, count), atol=1e-6 * length)
+    np.testing.assert_allclose(at, np.linspace(0, length, count), atol=1e-3 * length)
 
 
 @settings(max_examples=8)
@@ -99,7 +100,7 @@ def test_points_of_a_closed_curve_stand_at_even_distances_all_around(seed, handl
     assert len(course.points) == count
     np.testing.assert_allclose(course.points[0], places[0])
     at, length = along(course.path, course.points)
-    np.testing.assert_allclose(at, np.arange(count) * length / count, atol=1e-6 * length)
+    np.testing.assert_allclose(at, np.arange(count) * length / count, atol=1e-3 * length)
 
 
 @settings(max_examples=15)
@@ -125,16 +126,16 @@ def test_between_anchors_stand_their_share_of_the_points_and_none_on_an_anchor(
     for span, low, high in itertools.zip_longest(course.spans, stops, ends):
         # An anchor that ends an open curve has nothing behind it.
         if span is None:
-            assert low == high == pytest.approx(length)
+            assert low == pytest.approx(length)
             continue
         assert abs(len(span) - count * (high - low) / length) <= 1
         if not span:
             continue
         inside, _ = along(course.path, span)
-        assert inside.min() >= low - 1e-6
-        assert inside.max() <= high + 1e-6
+        assert inside.min() >= low - 0.1
+        assert inside.max() <= high + 0.1
         gaps = np.diff(inside)
-        np.testing.assert_allclose(gaps, gaps[:1].repeat(len(gaps)), atol=1e-5 * length)
+        np.testing.assert_allclose(gaps, gaps[:1].repeat(len(gaps)), atol=2e-3 * length)
     anchors = [place for row, place in enumerate(places) if row in rows]
     if course.points:
         apart = np.linalg.norm(np.array(course.points)[:, None] - np.array(anchors), axis=2)
@@ -213,8 +214,9 @@ def test_what_takes_part_is_gathered_in_order_and_what_is_excluded_is_not(data, 
     groups = data.draw(st.permutations([curve, patch]))
     # One of the anchors may be switched off.
     used = sorted(anchors)[data.draw(st.integers(0, 1)) :]
-    rows = {f"lm_{row}": k for k, row in enumerate(used)} | {"other": len(used)}
-    found = gathered(groups, rows, FINDER, lambda: FINDER)
+    places = {f"lm_{row}": curve.handles[row].source for row in used}
+    found = gathered(groups, places | {"other": (0.0, 0.0, 200.0)}, FINDER, lambda: FINDER)
+    rows = {name: k for k, name in enumerate([*places, "other"])}
     points = {"c": course_of(curve, FINDER).points, "p": patch.points}
     expected = [
         points[group.name][n]
@@ -240,7 +242,8 @@ def test_what_takes_part_is_gathered_in_order_and_what_is_excluded_is_not(data, 
 
 def test_a_closed_curve_begins_at_its_first_anchor_and_meets_each_once():
     curve = Curve("c", handles_of(around(3, 5), {1, 3}), is_closed=True, count=10)
-    found = gathered([curve], {"lm_1": 0, "lm_3": 1}, FINDER, lambda: FINDER)
+    places = {name: curve.handles[row].source for name, row in (("lm_1", 1), ("lm_3", 3))}
+    found = gathered([curve], places, FINDER, lambda: FINDER)
     (sliding,) = found.semilandmarks.curves
     rows = sliding.rows.tolist()
     assert sliding.is_closed
@@ -259,7 +262,10 @@ def test_the_destination_is_asked_for_only_where_a_curve_is_drawn_there():
     ghost = Curve("c", handles_of(places), count=4)
     (sliding,) = gathered([ghost], {}, FINDER, never).semilandmarks.curves
     assert sliding.path is None
-    drawn = replace(ghost, handles=tuple(Handle(place, place) for place in places))
+    there = replace(ghost, handles=tuple(Handle(place, place) for place in places))
+    (sliding,) = gathered([there], {}, FINDER, never).semilandmarks.curves
+    assert sliding.path is None
+    drawn = replace(there, drawn=True)
     (sliding,) = gathered([drawn], {}, FINDER, lambda: FINDER).semilandmarks.curves
     np.testing.assert_array_equal(sliding.path.places[[0, -1]], [places[0], places[-1]])
 

@@ -70,7 +70,7 @@ def curves(draw: st.DrawFn, name: str) -> Curve:
     handles = draw(st.lists(handle, min_size=3, max_size=5))
     count = draw(st.integers(0, 9))
     excluded = draw(st.frozensets(st.integers(0, count - 1))) if count else frozenset()
-    return Curve(name, tuple(handles), is_closed, count, excluded)
+    return Curve(name, tuple(handles), is_closed, count, excluded, draw(st.booleans()))
 
 
 @st.composite
@@ -116,7 +116,7 @@ HANDLES = (
     Handle((6.0, 7.0, 8.0), None),
 )
 CREST = Curve("crest, left = 1", HANDLES, count=3, excluded=frozenset({1}))
-RING = Curve("ring", HANDLES, is_closed=True, count=2)
+RING = Curve("ring", HANDLES, is_closed=True, count=2, drawn=True)
 CAP = Patch("cap", ((1.5, 1.0, 1.0), (2.0, 2.5, 2.0)), "ring", (0.5, 0.25, 1e-17), frozenset({0}))
 WHOLE = Patch("whole", ((9.0, 9.5, 9.0),))
 SLID = SlidRecord(
@@ -218,6 +218,7 @@ def test_what_had_come_to_rest_of_other_points_is_not_written(tmp_path: Path) ->
         (r"name=whole", "name=cap", "two groups are called 'cap'"),
         (r"closed=1", "closed=2", "closed of 'ring' is neither 0 nor 1"),
         (r"closed=1 ", "", "closed of 'ring' is neither 0 nor 1"),
+        (r"destination=drawn", "destination=maybe", "destination of 'ring' is 'maybe'"),
         (r"excluded=1", "excluded=7", "has no point 8"),
         (r"inside=0.5/0.25", "inside=0.25", "inside of 'cap' is no position"),
         (r"inside=0.5", "inside=x", "'x' is not a number"),

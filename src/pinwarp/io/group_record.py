@@ -276,10 +276,13 @@ def _placed(row: GroupRow) -> Position:
 def _curve(name: str, count: int, values: Mapping[str, str], rows: Sequence[GroupRow]) -> Curve:
     if values.get("closed") not in ("0", "1"):
         raise ValueError(f"closed of {shortened(name)} is neither 0 nor 1")
+    if values.get("destination", "drawn") != "drawn":
+        found = shortened(values["destination"])
+        raise ValueError(f"destination of {shortened(name)} is {found} and not 'drawn'")
     handles = tuple(Handle(_placed(row), row.destination, row.note) for row in rows)
     excluded = frozenset(map(int, re.findall("[0-9]{1,7}", values.get("excluded", ""))))
     try:
-        drawn = values.get("destination") == "drawn"
+        drawn = "destination" in values
         return Curve(name, handles, values["closed"] == "1", count, excluded, drawn)
     except LandmarkError as error:
         raise ValueError(f"the curve {error}") from None
