@@ -32,6 +32,7 @@ KEYS = {
     "fitted": (int, type(None)),
     "findings": list,
     "notes": list,
+    "groups": list,
     "pairs": list,
 }
 

@@ -6,11 +6,15 @@ from pathlib import Path
 
 import numpy as np
 
+from pinwarp.core.curves import PathFinder
+from pinwarp.core.groups import Handle
 from pinwarp.core.landmarks import Landmark, Role, Side, as_position
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.surface import Surface
 from pinwarp.io.landmark_files import write_landmarks
 from pinwarp.io.meshes import read_mesh, write_mesh
-from pinwarp.session.keeping.files import write_session
+from pinwarp.session import edits
+from pinwarp.session.keeping.files import read_session, write_session
 from pinwarp.session.session import Session
 
 PAIRS = 8
@@ -64,3 +68,22 @@ def make_study(folder: Path, subjects: int, *, meshes: bool = True) -> Path:
     manifest = folder / "study.csv"
     manifest.write_text("\n".join(lines) + "\n")
     return manifest
+
+
+def add_groups(folder: Path) -> Session:
+    """Give the study's session a patch and a ring, drawn on its own destination; return it."""
+    session = read_session(folder / "study.pinwarp.csv")
+    session = edits.set_mesh(session, Side.DESTINATION, read_mesh(folder / "s0.stl"))
+    surface = Surface(session.mesh(Side.SOURCE))
+    finder = PathFinder(surface)
+    angles = np.arange(5) * 2 * np.pi / 5
+    ring = np.column_stack([48 * np.cos(angles), 48 * np.sin(angles), 0 * angles])
+    ring = surface.closest(ring).positions
+    handles = [
+        Handle(as_position(a), as_position(b)) for a, b in zip(ring, shape(ring, 0), strict=True)
+    ]
+    session, _ = edits.add_curve(session, handles, finder, is_closed=True, count=9, name="ring")
+    session = edits.accept_curve(session, "ring", [handle.source for handle in handles])
+    session, _ = edits.add_patch(session, finder, count=25, name="ball")
+    write_session(folder / "study.pinwarp.csv", session)
+    return session

@@ -16,7 +16,9 @@ from pinwarp.cli.options import Applied, Blend, Penalty, with_options
 from pinwarp.cli.refine import Feature, Tolerance, Turn
 from pinwarp.cli.telling import INTERRUPTED, progress_bar, tell_error, tell_notes
 from pinwarp.core.errors import PinwarpError
+from pinwarp.core.groups import Curve
 from pinwarp.core.landmarks import Landmark, Role, Side
+from pinwarp.core.words import listed
 from pinwarp.io.landmark_files import read_landmarks
 from pinwarp.io.manifest import read_manifest
 from pinwarp.io.meshes import read_mesh
@@ -129,6 +131,15 @@ def batch(
         inputs=given,
         refinement=_refinement(refine, feature, tolerance, turn),
     )
+    if drawn := [x.name for x in shared.groups if isinstance(x, Curve) and x.drawn]:
+        tell_notes(
+            [
+                f"{listed(drawn)}: drawn on the session's own destination, which no subject is. "
+                "On each subject the points slide along their tangents."
+            ]
+        )
+    if refine and shared.groups:
+        tell_notes(["Refined: the places that are fitted take the place of curves and patches."])
     if subjects.unused:
         tell_notes([f"{manifest.name}: not used: {', '.join(subjects.unused)}."])
     with progress_bar() as progress, _stopped_by_signals() as stop:

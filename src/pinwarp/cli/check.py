@@ -23,6 +23,8 @@ from pinwarp.version import __version__
 FLAGGED = 1
 FITTED = "{:,} places: a small distance then proves nothing; figures of pairs are the landmarks'"
 
+SLID = "{:,} semilandmarks: a small distance then proves little"
+
 
 def check(
     session: SessionFile,
@@ -78,6 +80,8 @@ def _print(console: Console, name: str, session: Session, checked: checking.Chec
             style="bold" if pair.name in named else None,
         )
     console.print(pairs)
+    if checked.groups:
+        console.print(_of_groups(checked, decimals))
     for label, words in _figures(session, checked):
         console.print(f"{label:<22}{words}", markup=False, highlight=False)
     for found in checked.findings:
@@ -85,6 +89,17 @@ def _print(console: Console, name: str, session: Session, checked: checking.Chec
         console.print(f"{mark} {found.sentence}", markup=False, highlight=False)
     for note in checked.notes:
         console.print(f"- {note}", markup=False, highlight=False)
+
+
+def _of_groups(checked: checking.Check, decimals: int) -> Table:
+    groups = Table("Curve or patch")
+    for column in ("Kind", "Points", "Excluded", "Freed", "Largest slide"):
+        groups.add_column(column, justify="left" if column == "Kind" else "right")
+    for group in checked.groups:
+        kind = f"{group.kind}, drawn" if group.drawn else group.kind
+        counts = (str(group.points), str(group.excluded), str(group.freed))
+        groups.add_row(escape(group.name), kind, *counts, _number(group.largest_slide, decimals))
+    return groups
 
 
 def _figures(session: Session, checked: checking.Check) -> list[tuple[str, str]]:
@@ -112,7 +127,8 @@ def _figures(session: Session, checked: checking.Check) -> list[tuple[str, str]]
             )
         )
     if checked.fitted is not None:
-        figures.append(("Fitted to the surface", FITTED.format(checked.fitted)))
+        told = SLID if checked.groups else FITTED
+        figures.append(("Fitted to the surface", told.format(checked.fitted)))
     return figures
 
 

@@ -14,6 +14,9 @@ from pinwarp.core.landmarks import Side
 from pinwarp.session.keeping.files import read_session, with_meshes
 from pinwarp.session.outputs.warp_files import FileWarper, outputs_of, warp_each
 from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date, warp_in_words
+from pinwarp.session.warp.rested import rest_in_use
+from pinwarp.session.warp.slid_words import not_sliding_note, semilandmarks_in_words
+from pinwarp.session.warp.solved import solved
 
 
 def warp(
@@ -47,6 +50,8 @@ def warp(
     opened = with_options(read_session(session, meshes=meshes), penalty, components, blend)
     if not inputs and opened.source is None:
         raise PinwarpError(f"{session.name} has no source mesh: name the files to warp.")
+    if opened.groups and rest_in_use(opened) is None:
+        opened = with_meshes(opened, Side, session.absolute().parent)
     sources = inputs or ([] if opened.source is None else [opened.source.path])
     files = [file.path for file in (opened.source, opened.destination) if file is not None]
     outputs = outputs_of(sources, out, kept=[session, *files])
@@ -58,7 +63,9 @@ def warp(
         tell_notes([f"The session scales its source by {factor:g}: so are the inputs."])
     if is_out_of_date(opened):
         tell_notes([OUT_OF_DATE])
-    warper = FileWarper(opened)
+    warped = solved(opened)
+    tell_notes(not_sliding_note(warped.result))
+    warper = FileWarper(warped)
     failed = 0
     with progress_bar() as progress:
         for file in progress.track(
@@ -70,6 +77,8 @@ def warp(
                 continue
             tell_notes(file.notes, file.source.name)
             applied = warp_in_words(opened)
-            typer.echo(f"{file.output}: {applied}, {len(opened.pairs)} pairs")
+            points = semilandmarks_in_words(warped.result)
+            count = f"{len(opened.pairs)} pairs" + (f", {points}" if points else "")
+            typer.echo(f"{file.output}: {applied}, {count}")
     if failed:
         raise typer.Exit(BAD_USAGE)

@@ -186,6 +186,14 @@ def _at(handle: Handle, landmarks: Mapping[str, Landmark]) -> Handle:
     return Handle(landmark.source, landmark.destination, landmark.name)
 
 
+def on_source_only(group: Group) -> Group:
+    """Return a group without what was drawn of it on a destination."""
+    if isinstance(group, Patch):
+        return group
+    handles = tuple(replace(handle, destination=None) for handle in group.handles)
+    return replace(group, handles=handles, drawn=False)
+
+
 def moved_group(group: Group, side: Side, move: Callable[[Sequence[Position]], Matrix]) -> Group:
     """Return a group with all it has on one side moved, as when a bone is mirrored or scaled."""
 

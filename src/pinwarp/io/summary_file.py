@@ -24,6 +24,7 @@ NUMBERS = (
     "distance_95",
     "distance_max",
     "fitted",
+    "freed",
 )
 COLUMNS = ("name", "status", *NUMBERS, "findings", "notes", "error", "seconds", "made_from")
 

@@ -25,9 +25,9 @@ from pinwarp.session.outputs.exports import (
     warped_passengers,
 )
 from pinwarp.session.outputs.script import script_of
-from pinwarp.session.session import Session
 from pinwarp.session.warp.refined import warp_in_words
-from pinwarp.session.warp.solved import solved
+from pinwarp.session.warp.slid_words import not_sliding_note, semilandmarks_in_words
+from pinwarp.session.warp.solved import SolvedWarp, solved
 
 
 class Exports(Capability):
@@ -170,33 +170,47 @@ class Exports(Capability):
             COEFFICIENT_SUFFIXES,
             "Coefficients",
         )
-        session = self._editor.committed
-        if path is not None and self._tasks.write(
-            lambda: write_coefficients(path, session_coefficients(session)), path
-        ):
-            self._say_exported(path, session)
+        if path is not None:
+            self._write_solved(
+                path, lambda warp: write_coefficients(path, session_coefficients(warp))
+            )
 
     def export_script(self) -> None:
         """Ask for a file and write a script that warps the mesh again."""
         path = self._tasks.ask_save(
             "Export a script", f"warp_{self._stem}.py", (".py",), "Python scripts"
         )
-        session = self._editor.committed
-        if path is not None and self._tasks.write(
-            lambda: write_atomically(path, script_of(session, path.parent)), path
-        ):
-            self._say_exported(path, session)
+        if path is not None:
+            self._write_solved(
+                path, lambda warp: write_atomically(path, script_of(warp, path.parent))
+            )
+
+    def _write_solved(self, path: Path, write: Callable[[SolvedWarp], None]) -> None:
+        """Write what follows from the warp, and say which warp it was."""
+        session, found = self._editor.committed, []
+
+        def solve_and_write() -> None:
+            found.append(solved(session))
+            write(found[0])
+
+        if self._tasks.write(solve_and_write, path):
+            self._say_exported(path, found[0])
 
     @property
     def _stem(self) -> str:
         source = self._editor.committed.source
         return source.path.stem if source is not None else "mesh"
 
-    def _say_exported(self, path: Path, session: Session) -> None:
-        pairs = len(session.pairs)
+    def _say_exported(self, path: Path, warp: SolvedWarp) -> None:
+        session = warp.session
+        count = f"{len(session.pairs)} pairs"
+        if points := semilandmarks_in_words(warp.result):
+            count += f", {points}"
         penalty = f"penalty {format_length(session.settings.penalty, session.unit, 6)}"
         what = warp_in_words(session)
-        self._tasks.said.emit(f"Exported {path.name}: {what} ({pairs} pairs, {penalty})")
+        self._tasks.said.emit(f"Exported {path.name}: {what} ({count}, {penalty})")
+        for note in not_sliding_note(warp.result):
+            self._tasks.dialogs.tell("Without curves and patches", note)
 
     def ask_and_export_mesh(self) -> None:
         """Ask for a file and write the warped source mesh, in double precision."""
@@ -211,7 +225,7 @@ class Exports(Capability):
         """Write the warped source mesh, with normals and figures where the format has room."""
         session, suffix = self._editor.committed, path.suffix.lower()
 
-        def write(progress: Progress) -> None:
+        def write(progress: Progress) -> SolvedWarp:
             progress(0.05, "warping")
             warp = solved(session)
             mesh, data = warped_mesh(warp), NO_DATA
@@ -223,7 +237,8 @@ class Exports(Capability):
                 )
             progress(0.8, "writing")
             write_mesh(path, mesh, data)
+            return warp
 
         self._tasks.run(
-            f"Exporting {path.name}", write, lambda _nothing: self._say_exported(path, session)
+            f"Exporting {path.name}", write, lambda warp: self._say_exported(path, warp)
         )

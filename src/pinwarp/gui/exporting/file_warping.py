@@ -16,6 +16,8 @@ from pinwarp.io.meshes import MESH_SUFFIXES
 from pinwarp.session.editor import Editor
 from pinwarp.session.outputs.warp_files import FileWarper, WarpedFile, outputs_of, warp_each
 from pinwarp.session.warp.refined import warp_in_words
+from pinwarp.session.warp.slid_words import not_sliding_note
+from pinwarp.session.warp.solved import solved
 
 FILES = "Meshes and landmarks ({});;All files (*)".format(
     " ".join(f"*{suffix}" for suffix in (*MESH_SUFFIXES, *LANDMARK_SUFFIXES))
@@ -80,13 +82,16 @@ class FileWarping(Capability):
 
     def _warp(self, pairs: list[tuple[Path, Path]], folder: Path) -> None:
         session = self._editor.committed
+        told: list[str] = []
 
         def warp(progress: Progress) -> list[WarpedFile]:
             done: list[WarpedFile] = []
             inputs, outputs = zip(*pairs, strict=True)
             try:
                 progress(0.0, inputs[0].name)
-                for file in warp_each(FileWarper(session), inputs, outputs):
+                warped = solved(session)
+                told.extend(not_sliding_note(warped.result))
+                for file in warp_each(FileWarper(warped), inputs, outputs):
                     done.append(file)
                     if len(done) < len(pairs):
                         progress(len(done) / len(pairs), inputs[len(done)].name)
@@ -96,14 +101,16 @@ class FileWarping(Capability):
             return done
 
         def arrived(done: list[WarpedFile]) -> None:
-            self._sum_up(done, len(pairs), folder, warp_in_words(session))
+            self._sum_up(done, len(pairs), folder, warp_in_words(session), told)
 
         self._tasks.run("Warping files", warp, arrived)
 
-    def _sum_up(self, done: list[WarpedFile], total: int, folder: Path, what: str) -> None:
+    def _sum_up(
+        self, done: list[WarpedFile], total: int, folder: Path, what: str, told: list[str]
+    ) -> None:
         failed = sum(bool(file.error) for file in done)
         written = len(done) - failed
-        words = [f"{counted(written, 'file')} written to {folder}: {what}."]
+        words = [f"{counted(written, 'file')} written to {folder}: {what}.", *told]
         if failed:
             words.append(f"{counted(failed, 'file')} could not be warped.")
         if len(done) < total:
@@ -111,7 +118,7 @@ class FileWarping(Capability):
         details = "\n".join(line for file in done for line in _lines(file))
         self._tasks.said.emit(words[0])
         noted = any(file.notes for file in done)
-        if failed or noted or len(done) < total or total > 1:
+        if failed or noted or told or len(done) < total or total > 1:
             self._tasks.dialogs.tell("Warped files", " ".join(words), details)
 
 

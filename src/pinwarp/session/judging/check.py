@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from pinwarp.core.findings import Severity, gravest_first
+from pinwarp.core.groups import Curve
 from pinwarp.core.lengths import rms
 from pinwarp.core.names import look_alike_notes
 from pinwarp.core.surface_distance import DistanceFigures
@@ -16,6 +17,8 @@ from pinwarp.io.meshes import MeshFile
 from pinwarp.session.judging.quality import NamedFinding, named_findings, quality_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date
+from pinwarp.session.warp.result import WarpResult
+from pinwarp.session.warp.slid_words import kind_of, not_sliding_note
 from pinwarp.session.warp.solved import SolvedWarp, solved
 
 
@@ -42,6 +45,34 @@ class PairFigures:
 
 
 @dataclass(frozen=True)
+class GroupFigures:
+    """What became of one curve or patch; lengths in the unit of the session.
+
+    Attributes
+    ----------
+    name, kind
+        The group, and what it is.
+    drawn
+        Whether its points follow what was drawn on the destination.
+    points, excluded, freed
+        How many it has, how many of them somebody excluded, and how many have no counterpart.
+    used
+        How many the warp was solved from.
+    largest_slide
+        How far the point slid that slid furthest; NaN where none did here.
+    """
+
+    name: str
+    kind: str
+    drawn: bool
+    points: int
+    excluded: int
+    freed: int
+    used: int
+    largest_slide: float = math.nan
+
+
+@dataclass(frozen=True)
 class Check:
     """The figures of a session; lengths in its unit, None where there is no such figure.
 
@@ -60,8 +91,10 @@ class Check:
     distance
         Of the warped source from the surface of the destination.
     fitted
-        How many places were fitted to that surface, so that the distance proves nothing; None
-        where none were.
+        How many places were fitted to that surface, semilandmarks among them, so that the
+        distance proves little; None where none were.
+    groups
+        The curves and patches whose semilandmarks slid.
     findings
         What was noticed, the gravest first; what is wrong is flagged.
     notes
@@ -86,6 +119,12 @@ class Check:
     fitted: int | None
     findings: tuple[NamedFinding, ...]
     notes: tuple[str, ...] = ()
+    groups: tuple[GroupFigures, ...] = ()
+
+    @property
+    def freed(self) -> int | None:
+        """How many semilandmarks have no counterpart; None where none slid."""
+        return sum(group.freed for group in self.groups) if self.groups else None
 
     @property
     def is_flagged(self) -> bool:
@@ -113,13 +152,8 @@ class Check:
                 for named in self.findings
             ],
             "notes": list(self.notes),
-            "pairs": [
-                {
-                    key: value if isinstance(value, str) or math.isfinite(value) else None
-                    for key, value in asdict(pair).items()
-                }
-                for pair in self.pairs
-            ],
+            "groups": [_plain(group) for group in self.groups],
+            "pairs": [_plain(pair) for pair in self.pairs],
         }
 
 
@@ -179,10 +213,40 @@ def check(session: Session | SolvedWarp) -> Check:
         findings=gravest_first(findings),
         notes=(
             *_about_refinement(session),
+            *not_sliding_note(result),
             *_about_files(session),
             *look_alike_notes(x.name for x in session.landmarks),
         ),
+        groups=groups_of(result),
     )
+
+
+def groups_of(result: WarpResult) -> tuple[GroupFigures, ...]:
+    """Return what became of the curves and patches of a warp; none where they have no part."""
+    at_rest = result.semilandmarks
+    if at_rest is None:
+        return ()
+    return tuple(
+        GroupFigures(
+            name=slid.group.name,
+            kind=kind_of(slid.group),
+            drawn=isinstance(slid.group, Curve) and slid.group.is_drawn,
+            points=slid.group.count,
+            excluded=len(slid.group.excluded),
+            freed=slid.freed,
+            used=len(slid.numbers) - slid.freed,
+            # What was read at rest says nothing of the way there.
+            largest_slide=math.nan if at_rest.is_kept else slid.largest_slide,
+        )
+        for slid in at_rest.groups
+    )
+
+
+def _plain(figures: PairFigures | GroupFigures) -> dict[str, Any]:
+    return {
+        key: value if isinstance(value, str) or math.isfinite(value) else None
+        for key, value in asdict(figures).items()
+    }
 
 
 def _about_refinement(session: Session) -> tuple[str, ...]:

@@ -51,7 +51,7 @@ def warped_mesh_data(
         ``largest_stretch`` and ``smallest_stretch`` of any direction; and ``deviation_UNIT``,
         the standard deviation of a coordinate of the warp as a prediction, where it means what
         is applied: for the whole warp and the affine fit of the regularising convention, with
-        enough pairs.
+        enough pairs and without semilandmarks, which were fitted, not observed.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def warped_mesh_data(
 def _prediction(warp: SolvedWarp) -> Prediction | None:
     """Return what predicts the warp as applied, None where nothing does."""
     settings = warp.session.settings
-    if settings.blend != 1 or not settings.is_regular:
+    if settings.blend != 1 or not settings.is_regular or warp.result.semilandmarks is not None:
         return None
     match settings.components:
         case Components.FULL | Components.WITHOUT_POSE:

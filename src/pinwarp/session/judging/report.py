@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import platform
 from collections.abc import Callable
 from datetime import datetime
@@ -17,11 +18,13 @@ from pinwarp.io.chart import Line, Mark, line_chart
 from pinwarp.io.meshes import MeshFile
 from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.io.report import Report, ReportRow
+from pinwarp.session.judging.check import groups_of
 from pinwarp.session.judging.quality import Quality, quality_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date, refinement_in_use
 from pinwarp.session.warp.result import WarpResult
 from pinwarp.session.warp.setting_words import settings_in_words
+from pinwarp.session.warp.slid_words import not_sliding_note, semilandmarks_in_words
 from pinwarp.session.warp.solved import SolvedWarp
 from pinwarp.version import __version__
 
@@ -31,6 +34,13 @@ FITTED = (
     " The warp was fitted to the surface: a small distance proves nothing, least of all that "
     "places lie where they belong. What the pairs say about one another is of the warp of the "
     "landmarks alone."
+)
+
+
+SLID = (
+    " Semilandmarks were fitted to the surface: a small distance proves little. A point that is "
+    "freed has no counterpart on the destination, and no part in the warp. Left out tells how far "
+    "a pair is missed while the semilandmarks slide on."
 )
 
 
@@ -68,6 +78,7 @@ def report_of(
     assert quality is not None, "what is solved can be judged"
     names = [pair.name for pair in session.pairs]
     unit = session.unit
+    also = "" if result.semilandmarks is None else " and semilandmarks"
     told(0.3, "measuring distances")
     folds, compared = warp.folds, warp.comparison
     patches = () if folds is None else (patch.finding for patch in folds.patches)
@@ -81,6 +92,7 @@ def report_of(
         findings=tuple(finding.describe(names, unit) for finding in found),
         figures=(
             *_of_pairs(warp, quality),
+            *_of_groups(result, unit),
             *_of_surfaces(compared, folds, unit),
             *_of_warp(quality, unit),
         ),
@@ -96,11 +108,12 @@ def report_of(
                 "Distances",
                 "Between the surfaces as applied: from every vertex of one to the nearest place on "
                 "the other, not weighted by area."
-                + ("" if refinement_in_use(session) is None else FITTED),
+                + ("" if refinement_in_use(session) is None else FITTED)
+                + ("" if result.semilandmarks is None else SLID),
             ),
             (
                 "Affine part",
-                "The best affine fit of the pairs, taken apart: it stretches, turns "
+                f"The best affine fit of the pairs{also}, taken apart: it stretches, turns "
                 "and moves. Translation is that of the middle of the source landmarks.",
             ),
         ),
@@ -120,6 +133,9 @@ def _facts(session: Session, result: WarpResult) -> tuple[tuple[str, str], ...]:
         facts.append(("Refined", _fitted_text(refined, len(session.pairs), unit)))
     elif is_out_of_date(session):
         facts.append(("Refined", OUT_OF_DATE))
+    if words := semilandmarks_in_words(result):
+        facts.append(("Semilandmarks", words))
+    facts += [("Semilandmarks", note) for note in not_sliding_note(result)]
     if result.flexibility is not None:
         facts.append(("Flexibility", f"{result.flexibility:.0%}"))
     if result.rms_residual is not None:
@@ -164,6 +180,22 @@ def _of_pairs(warp: SolvedWarp, quality: Quality) -> list[ReportRow]:
         for side in Side:
             for axis, number in zip(_AXES, pair.position(side) or (), strict=False):
                 figures.append(ReportRow("Pairs", pair.name, f"{side.value} {axis}", number, unit))
+    return figures
+
+
+def _of_groups(result: WarpResult, unit: str) -> list[ReportRow]:
+    figures = []
+    for group in groups_of(result):
+        for quantity, count in (
+            ("points", group.points),
+            ("excluded", group.excluded),
+            ("freed", group.freed),
+            ("used", group.used),
+        ):
+            figures.append(ReportRow("Semilandmarks", group.name, quantity, count))
+        if not math.isnan(group.largest_slide):
+            slide = ("largest slide", group.largest_slide, unit)
+            figures.append(ReportRow("Semilandmarks", group.name, *slide))
     return figures
 
 

@@ -31,6 +31,10 @@ FEW_PAIRS = (
     "The uncertainty needs five pairs that do not lie in one plane, since it is told from how "
     "well the pairs foretell one another: place another pair."
 )
+FITTED = (
+    "With semilandmarks nothing foretells the uncertainty, since they were fitted to the surface, "
+    "not observed: remove curves and patches to see that of the landmarks."
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,6 +206,8 @@ def _missing(result: WarpResult, destination: Mesh | None, kind: MapKind) -> str
     if kind is MapKind.DISTANCE and destination is None:
         return "Open the destination mesh: the distance to it is what this map shows."
     if kind is MapKind.UNCERTAINTY:
+        if result.semilandmarks is not None:
+            return FITTED
         if len(inputs.source) < LEAST_PAIRS:
             return FEW_PAIRS
         if not inputs.settings.is_regular:

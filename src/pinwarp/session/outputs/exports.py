@@ -12,6 +12,7 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.io.coefficients import Coefficients
 from pinwarp.session.session import Session
 from pinwarp.session.warp.refined import fitted_names
+from pinwarp.session.warp.slid_words import point_names
 from pinwarp.session.warp.solved import SolvedWarp, solved, source_of
 from pinwarp.version import __version__
 
@@ -93,10 +94,15 @@ def session_coefficients(session: Session | SolvedWarp) -> Coefficients:
     session = warp.session
     source, destination = session.source, session.destination
     names = [pair.name for pair in session.pairs]
-    names += fitted_names(warp.fitted or 0, names)
+    at_rest = warp.result.semilandmarks
+    if at_rest is not None:
+        names += point_names(at_rest, names)
+    else:
+        names += fitted_names(warp.fitted or 0, names)
     return Coefficients(
         spline=warp.applied,
-        names=tuple(names),
+        # A fit of the landmarks has no others.
+        names=tuple(names[: len(warp.applied.source)]),
         unit=session.unit,
         settings=session.settings,
         source_sha256=source.sha256 if source is not None else "",

@@ -9,19 +9,21 @@ from enum import Enum
 from pathlib import Path
 
 from pinwarp.core.errors import PinwarpError
-from pinwarp.core.landmarks import Landmark
+from pinwarp.core.landmarks import Landmark, as_position
 from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
 from pinwarp.io.mesh_reference import MeshReference
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session.session import Session
 from pinwarp.session.warp.refined import fitted_names, refinement_in_use, warp_in_words
+from pinwarp.session.warp.slid_words import point_names
+from pinwarp.session.warp.solved import SolvedWarp, solved
 from pinwarp.version import __version__
 
 # Told even where they are as usual.
 _ALWAYS = ("penalty", "convention")
 
 
-def script_of(session: Session, folder: Path) -> str:
+def script_of(session: Session | SolvedWarp, folder: Path) -> str:
     """Return a script that writes the warped mesh as the session exports it.
 
     The landmarks are in the script, with all their digits; the mesh is read from where it is.
@@ -29,7 +31,7 @@ def script_of(session: Session, folder: Path) -> str:
     Parameters
     ----------
     session
-        With a source mesh and pairs.
+        With a source mesh and pairs; or its warp, solved.
     folder
         Where the script will be: meshes below it are named relative to it, and the warped mesh
         is written there.
@@ -47,6 +49,9 @@ def script_of(session: Session, folder: Path) -> str:
     >>> [line for line in script.splitlines() if line.startswith("SOURCE_MESH")]
     ["SOURCE_MESH = HERE / 'femur_generic.ply'"]
     """
+    warp = session
+    if isinstance(session, SolvedWarp):
+        session = session.session
     source = session.source
     if source is None:
         raise PinwarpError("There is no source mesh to warp: open one first.")
@@ -54,14 +59,17 @@ def script_of(session: Session, folder: Path) -> str:
         raise PinwarpError("There is no pair yet: place a landmark on both meshes first.")
     path, words = source.path, warp_in_words(session)
     warped = f"{path.stem}_warped{path.suffix}"
-    session = _of_plain_pairs(session)
+    placed = len(session.pairs)
+    session, is_slid = _of_plain_pairs(session, warp)
+    count = f"{len(session.pairs)} pairs"
+    count += f", {len(session.pairs) - placed} of them semilandmarks" if is_slid else ""
     pairs = [
         f"    {pair.name!r}: ({pair.source!r}, {pair.destination!r})," for pair in session.pairs
     ]
     changes, imports = _as_seen(source)
     return "\n".join(
         [
-            f'"""Warp a mesh as pinwarp {__version__} did: {words}, {len(pairs)} pairs."""',
+            f'"""Warp a mesh as pinwarp {__version__} did: {words}, {count}."""',
             "",
             *(["from dataclasses import replace"] if changes else []),
             "from pathlib import Path",
@@ -97,22 +105,39 @@ def script_of(session: Session, folder: Path) -> str:
     )
 
 
-def _of_plain_pairs(session: Session) -> Session:
-    """Return the session with what its refinement fitted as pairs like any other."""
+def _of_plain_pairs(session: Session, warp: Session | SolvedWarp) -> tuple[Session, bool]:
+    """Return the session with what was fitted or slid as pairs like any other, and if any slid."""
     refined = refinement_in_use(session)
     if refined is None:
-        return session
+        return _with_semilandmarks(warp) if session.groups else (session, False)
     if not session.settings.is_whole:
         raise PinwarpError("A script can only apply a refined warp in full: choose the full warp.")
     names = [pair.name for pair in session.pairs]
     names += fitted_names(len(refined.source) - len(names), names)
     rows = zip(names, refined.source, refined.destination, strict=True)
-    return replace(
+    plain = replace(
         session,
         landmarks=tuple(Landmark(name, source, place) for name, source, place in rows),
         settings=USUAL_SETTINGS,
         refinement=None,
+        groups=(),
     )
+    return plain, False
+
+
+def _with_semilandmarks(session: Session | SolvedWarp) -> tuple[Session, bool]:
+    warp = solved(session)
+    session = warp.session
+    at_rest = warp.result.semilandmarks
+    if at_rest is None:
+        return replace(session, groups=()), False
+    names = [pair.name for pair in session.pairs]
+    factor, places = warp.fit
+    rows = zip(
+        point_names(at_rest, names), factor.source[len(names) :], places[len(names) :], strict=True
+    )
+    points = (Landmark(name, as_position(a), as_position(b)) for name, a, b in rows)
+    return replace(session, landmarks=(*session.pairs, *points), groups=()), True
 
 
 def _as_seen(file: MeshFile | MeshReference) -> tuple[list[str], list[str]]:

@@ -19,7 +19,7 @@ from pinwarp.io.meshes import MESH_SUFFIXES, read_mesh, write_mesh
 from pinwarp.session.importing.conversion import frame_notes, write_in_frame
 from pinwarp.session.outputs.replacing import refuse_to_replace
 from pinwarp.session.session import Session
-from pinwarp.session.warp.solved import solved
+from pinwarp.session.warp.solved import SolvedWarp, solved
 
 WARPED = "_warped"
 
@@ -75,8 +75,9 @@ class FileWarper:
 
     Parameters
     ----------
-    session
-        With its source mesh read, where the session sees it in a mirror.
+    warp
+        The warp of a session with its source mesh read, where the session sees it in a mirror;
+        or that session.
 
     Raises
     ------
@@ -85,9 +86,11 @@ class FileWarper:
         missing.
     """
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, warp: Session | SolvedWarp) -> None:
+        warp = solved(warp)
+        session = warp.session
         self._unit = session.unit
-        self._spline: Spline = solved(session).applied
+        self._spline: Spline = warp.applied
         self._axes = "" if session.source is None else session.source.mirrored
         self._scale = 1.0 if session.source is None else session.source.scaled
         self._mesh = session.mesh(Side.SOURCE)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError, PinwarpError, words_of
+from pinwarp.core.groups import on_source_only
 from pinwarp.core.landmarks import Role
 from pinwarp.core.settings import WarpSettings
 from pinwarp.io.manifest import Manifest, Subject
@@ -72,8 +73,8 @@ def plan(
     manifest
         The subjects; what a row leaves open is taken from the source.
     source
-        With its mesh read, landmarks, penalty and so on. Where its landmarks lie on another
-        destination does not matter.
+        With its mesh read, landmarks, curves, patches, penalty and so on. Where its landmarks
+        lie on another destination does not matter, nor what was drawn there.
     folder
         Where the outputs go.
     suffix
@@ -87,7 +88,8 @@ def plan(
     ------
     PinwarpError
         When the source has no mesh or no landmark for pairs, the format is not known, an output
-        would replace an input, or a subject has no mesh to be refined to.
+        would replace an input, or a subject has no mesh to be refined to, or for semilandmarks
+        to slide on.
 
     Examples
     --------
@@ -122,14 +124,16 @@ def plan(
         destination=None,
         landmarks=landmarks,
         refinement=None,
+        groups=tuple(map(on_source_only, source.groups)),
+        slid=None,
     )
-    if refinement is not None:
-        without = next((x for x in manifest.subjects if x.destination_mesh is None), None)
-        if without is not None:
-            raise PinwarpError(
-                f"{without.name} has no destination_mesh in {manifest.path.name}: without one "
-                "there is no surface to refine to."
-            )
+    needed = "refine to" if refinement is not None else "slide on" if source.groups else ""
+    without = next((x for x in manifest.subjects if x.destination_mesh is None), None)
+    if needed and without is not None:
+        raise PinwarpError(
+            f"{without.name} has no destination_mesh in {manifest.path.name}: without one "
+            f"there is no surface to {needed}."
+        )
     tasks = tuple(
         Task(
             subject=subject,
@@ -289,6 +293,7 @@ def _row(task: Task, result: Outcome | Exception) -> SummaryRow:
         "distance_95": None if distance is None else distance.percentile_95,
         "distance_max": None if distance is None else distance.maximum,
         "fitted": checked.fitted,
+        "freed": checked.freed,
     }
     return (
         row

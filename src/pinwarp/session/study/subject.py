@@ -13,6 +13,7 @@ from pinwarp.core.errors import FileFormatError, PinwarpError, words_of
 from pinwarp.core.landmarks import Landmark, Role, Side
 from pinwarp.core.names import look_alike_notes
 from pinwarp.core.words import counted, some_of
+from pinwarp.io.group_record import METHOD as SLIDING_METHOD
 from pinwarp.io.landmark_files import LandmarkReading, read_landmarks, write_landmarks
 from pinwarp.io.manifest import Subject
 from pinwarp.io.meshes import MeshFile, read_mesh, write_mesh
@@ -127,6 +128,9 @@ def _warp(task: Task) -> tuple[Check, tuple[str, ...]]:
             folding = counted(refined.folding, "vertex", "vertices")
             notes = (*notes, f"{folding} would have folded: refined less.")
     warp = solved(session)
+    if warp.result.not_sliding is not None:
+        # Where the others are warped with semilandmarks, one without would not be comparable.
+        raise PinwarpError(warp.result.not_sliding)
     checked = check(warp)
     write_mesh(task.mesh, warped_mesh(warp))
     if task.passengers is not None:
@@ -236,12 +240,19 @@ def made_from(task: Task) -> str:
         tuple((x.name, x.source, x.role.value, x.enabled) for x in session.landmarks),
         session.settings,
         session.unit,
+        *_of_groups(session),
         _content(task, subject.destination_landmarks),
         _content(task, subject.destination_mesh),
         task.mesh.suffix,
         *(() if task.refinement is None else (astuple(task.refinement), METHOD)),
     )
     return f"sha256:{hashlib.sha256(repr(parts).encode()).hexdigest()[:32]}"
+
+
+def _of_groups(session: Session) -> tuple[object, ...]:
+    # Sets have no order of their own; without groups the hash is what it always was.
+    groups = [(replace(x, excluded=frozenset()), sorted(x.excluded)) for x in session.groups]
+    return (groups, SLIDING_METHOD) if groups else ()
 
 
 def _content(task: Task, path: Path | None) -> str:

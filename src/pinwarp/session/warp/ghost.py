@@ -30,7 +30,7 @@ class Ghost:
         Where it is expected, in that side's mesh unit.
     deviation
         The prediction's standard deviation there, in destination mesh units; None where there
-        are too few pairs to tell.
+        are too few pairs to tell, and with semilandmarks.
     """
 
     name: str
@@ -76,8 +76,10 @@ def _predicted(landmark: Landmark | None, side: Side, result: WarpResult) -> Gho
             return None
         expected = source
     deviation = None
-    # Not while the eigenvalues are put off: they would hold the hand up.
-    if spline.convention is PenaltyConvention.REGULARISING and factor.has_modes:
+    # Not while the eigenvalues are put off: they would hold the hand up. Semilandmarks bring the
+    # expected place nearer than the pairs alone could tell.
+    foretold = result.semilandmarks is None and factor.has_modes
+    if foretold and spline.convention is PenaltyConvention.REGULARISING:
         prediction = prediction_of(factor, np.array(result.inputs.destination), spline.penalty)
         if prediction is not None:
             deviation = float(prediction.standard_deviation(source)[0])

@@ -154,6 +154,11 @@ class SlidGroups:
         """How many take part in the warp."""
         return len(self.slid.used) - self.landmarks
 
+    @property
+    def is_kept(self) -> bool:
+        """Whether they were read where they had rested, since without a mesh nothing slides."""
+        return not self.slid.energies
+
     def left_out(self, penalty: float = 0.0) -> Matrix:
         """Return (n, 3) how far each landmark misses, left out, while the others slide on.
 

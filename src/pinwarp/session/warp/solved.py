@@ -41,7 +41,8 @@ class SolvedWarp:
     session
         What was solved.
     factor, spline
-        The source landmarks and the whole warp, before any part of it is chosen.
+        The source landmarks, without semilandmarks, and the whole warp, before any part of it is
+        chosen.
     result
         The same as the window has it: what is drawn, residuals, and what goes with them.
 
@@ -63,10 +64,21 @@ class SolvedWarp:
         return np.array(self.result.inputs.destination)
 
     @property
+    def fit(self) -> tuple[SourceFactor, Matrix]:
+        """What it was solved from: pairs and, below them, semilandmarks at rest."""
+        assert self.result.fit is not None, "what is solved was solved from something"
+        return self.result.fit
+
+    @property
     def fitted(self) -> int | None:
-        """How many places it was fitted to beside the pairs; None where it is not refined."""
-        refined = self.result.inputs.refinement
-        return None if refined is None else len(refined.source) - len(self.destination)
+        """How many places it was fitted to beside the pairs.
+
+        None where it is not refined, and no semilandmark slid.
+        """
+        refined, at_rest = self.result.inputs.refinement, self.result.semilandmarks
+        if refined is not None:
+            return len(refined.source) - len(self.destination)
+        return None if at_rest is None else at_rest.count
 
     @property
     def residuals(self) -> Matrix:
@@ -76,7 +88,7 @@ class SolvedWarp:
 
     def part(self, components: Components, blend: float = 1.0) -> Spline:
         """Return a part of it; see :func:`pinwarp.core.components.applied`."""
-        return applied(self.spline, self.factor, self.destination, components, blend)
+        return applied(self.spline, *self.fit, components, blend)
 
     @cached_property
     def drawn(self) -> Spline:
