@@ -12,7 +12,7 @@ from tests.session.study import add_groups, make_study
 from pinwarp.core.components import Components
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.groups import Curve
-from pinwarp.core.landmarks import Side
+from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.core.maps import MapKind
 from pinwarp.io.manifest import read_manifest
 from pinwarp.io.meshes import read_mesh
@@ -29,6 +29,7 @@ from pinwarp.session.outputs.exports import (
     warped_passengers,
 )
 from pinwarp.session.outputs.script import script_of
+from pinwarp.session.outputs.semilandmarks import semilandmarks_on
 from pinwarp.session.study.batch import plan
 from pinwarp.session.study.subject import made_from, warp_subject
 from pinwarp.session.warp.ghost import ghost_of
@@ -213,3 +214,44 @@ def test_a_subject_on_which_nothing_can_slide_fails_and_says_why(tasks):
     outcome = warp_subject(replace(tasks[1], session=few))
     assert "3 pairs" in outcome.error
     assert not tasks[1].mesh.exists()
+
+
+# For other programs
+
+
+def test_both_sides_have_the_same_rows(session, warp):
+    there, left = semilandmarks_on(warp, Side.DESTINATION)
+    here, _ = semilandmarks_on(warp, Side.SOURCE)
+    assert [name for name, _ in here.places] == [name for name, _ in there.places]
+    assert (here.curves, here.patches) == (there.curves, there.patches)
+    assert here.landmarks == 8
+    assert left[0] == "1 landmark that is a passenger or switched off: left out (muscle)."
+    assert here.missing == 0
+    assert there.missing == warp.result.semilandmarks.freed
+    ring, ball = here.curves[0], here.patches[0]
+    assert ring.points == tuple(range(8, 17))
+    assert ball.points == tuple(range(17, 17 + len(ball.points)))
+    carried = warp.spline.evaluate([place for _, place in here.places])
+    for (_, place), expected in zip(there.places, carried, strict=True):
+        assert place is None or np.allclose(place, expected, atol=1e-6)
+
+
+def test_anchors_stand_among_the_points_of_their_curve(session):
+    anchor = session.group("ring").handles[0]
+    mark = Landmark("anchor", anchor.source, anchor.destination)
+    handles = (replace(anchor, landmark="anchor"), *session.group("ring").handles[1:])
+    groups = (replace(session.group("ring"), handles=handles),)
+    changed = replace(session, landmarks=(*session.landmarks, mark), groups=groups)
+    points, _ = semilandmarks_on(changed, Side.SOURCE)
+    (ring,) = points.curves
+    assert ring.rows[0] == 8
+    assert points.places[8][0] == "anchor"
+    assert set(ring.rows) - set(ring.points) == {8}
+    assert len(ring.sliders) == 9
+
+
+def test_without_semilandmarks_at_rest_there_is_nothing_to_write(session, plain):
+    with pytest.raises(PinwarpError, match="no curves or patches"):
+        semilandmarks_on(plain, Side.SOURCE)
+    with pytest.raises(PinwarpError, match="no destination mesh"):
+        semilandmarks_on(replace(session, destination=None), Side.SOURCE)

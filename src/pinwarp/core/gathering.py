@@ -251,7 +251,7 @@ def gathered(
         if group.is_drawn:
             with _naming(group, Side.DESTINATION):
                 path = path_of(group, destination(), Side.DESTINATION)
-        along = _rows_along(group, course, rows, {n: first + k for k, n in enumerate(used)})
+        along = rows_along(group, course, rows, {n: first + k for k, n in enumerate(used)})
         curves.append(SlidingCurve(along, group.is_closed, path))
     places = np.array(points, np.float64).reshape(-1, 3)
     normals = source.surface.closest(places).normals if len(places) else places
@@ -285,7 +285,7 @@ def _naming(curve: Curve, side: Side) -> Iterator[None]:
         raise type(error)(f"{curve.name}, on the {side.value}: {error}") from None
 
 
-def _rows_along(
+def rows_along(
     curve: Curve, course: Course, rows: Mapping[str, int], of_point: Mapping[int, int]
 ) -> NDArray[np.int64]:
     """Return the rows of anchors and points in their order; what takes no part is left out."""

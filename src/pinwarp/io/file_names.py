@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 SESSION_SUFFIX = ".pinwarp.csv"
@@ -50,3 +51,14 @@ def is_backup(path: Path) -> bool:
     (True, False)
     """
     return path.name.lower().endswith(BACKUP_SUFFIX)
+
+
+def as_file_name(name: str) -> str:
+    """Return a name with what no file may be called by replaced.
+
+    Examples
+    --------
+    >>> as_file_name("linea aspera: left/1"), as_file_name("..")
+    ('linea_aspera_left_1', '_')
+    """
+    return re.sub(r"[^\w-]+", "_", name)[:80] or "_"

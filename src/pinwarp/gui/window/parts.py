@@ -13,6 +13,7 @@ from pinwarp.gui.exporting.exports import Exports
 from pinwarp.gui.exporting.file_warping import FileWarping
 from pinwarp.gui.exporting.picture_export import PictureExport
 from pinwarp.gui.exporting.report import ReportExport
+from pinwarp.gui.exporting.semilandmark_export import SemilandmarkExport
 from pinwarp.gui.files.documents import Documents
 from pinwarp.gui.files.recent_files import RecentFiles
 from pinwarp.gui.files.recovery import Recovery
@@ -119,6 +120,7 @@ class Parts:
             editor, tasks, recent, self.saving, meshes, self.imports, self.recovery.window_with
         )
         self.exports = Exports(editor, tasks)
+        self.semilandmarks = SemilandmarkExport(editor, tasks)
         self.pictures = PictureExport(editor, tasks, views, frame)
         self.report = ReportExport(
             editor,

@@ -236,13 +236,28 @@ def text_of(landmarks: Sequence[Landmark], side: Side | None, unit: str, title: 
     """
     del title
     assert side is not None, "pairs are refused before"
+    placed = in_millimetres(landmarks, unit)
+    return Written(markup_text([(x.name, x.position(side)) for x in placed], "Fiducial"))
+
+
+def markup_text(places: Sequence[tuple[str, Position | None]], kind: str, name: str = "") -> str:
+    """Return one list of control points in millimetres: landmarks, or a curve.
+
+    Parameters
+    ----------
+    places
+        Labels and positions; None is written as not placed.
+    kind
+        ``"Fiducial"``, ``"Curve"`` or ``"ClosedCurve"``.
+    name
+        What the list is called, if anything.
+    """
     points = []
-    for number, landmark in enumerate(in_millimetres(landmarks, unit), 1):
-        position = landmark.position(side)
+    for number, (label, position) in enumerate(places, 1):
         points.append(
             {
                 "id": str(number),
-                "label": landmark.name,
+                "label": label,
                 "description": "",
                 "associatedNodeID": "",
                 # What Slicer itself writes for a point that is not placed.
@@ -255,7 +270,8 @@ def text_of(landmarks: Sequence[Landmark], side: Side | None, unit: str, title: 
             }
         )
     markup = {
-        "type": "Fiducial",
+        "type": kind,
+        **({"name": name} if name else {}),
         "coordinateSystem": "LPS",
         "coordinateUnits": "mm",
         "locked": False,
@@ -265,4 +281,4 @@ def text_of(landmarks: Sequence[Landmark], side: Side | None, unit: str, title: 
         "controlPoints": points,
     }
     root = {"@schema": _SCHEMA, "markups": [markup]}
-    return Written(json.dumps(root, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+    return json.dumps(root, indent=1, ensure_ascii=False, allow_nan=False) + "\n"

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Landmark, Side, flipped
+from pinwarp.core.words import counted, some_of
 from pinwarp.io.file_names import is_session
 from pinwarp.io.landmark_files import (
     LandmarkFormat,
@@ -111,7 +112,16 @@ def convert_landmarks(
 
 def _session_reading(path: Path) -> LandmarkReading:
     record = read_session(path)
-    return LandmarkReading(record.landmarks, True, (), "pinwarp session", unit=record.unit)
+    notes: tuple[str, ...] = ()
+    if record.groups:
+        names = some_of([group.name for group in record.groups])
+        notes = (
+            f"{counted(len(record.groups), 'curve or patch', 'curves and patches')} left out "
+            f"({names}): --semilandmarks writes them, too.",
+        )
+    return LandmarkReading(
+        record.landmarks, True, (), "pinwarp session", unit=record.unit, notes=notes
+    )
 
 
 def write_in_frame(

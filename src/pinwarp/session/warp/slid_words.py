@@ -10,19 +10,21 @@ from pinwarp.session.warp.result import WarpResult
 from pinwarp.session.warp.sliding import SlidGroups
 
 
-def point_names(at_rest: SlidGroups, landmarks: Iterable[str]) -> list[str]:
+def point_names(at_rest: SlidGroups, landmarks: Iterable[str], *, freed: bool = False) -> list[str]:
     """Return what the semilandmarks that a warp was solved from are called, in their order.
 
     Parameters
     ----------
     at_rest
-        The semilandmarks; freed ones have no part in the warp.
+        The semilandmarks.
     landmarks
         Names that are taken.
+    freed
+        Whether those without a counterpart are named too, though they have no part in the warp.
     """
     taken, names = set(landmarks), []
     for group in at_rest.groups:
-        for number in group.numbers[~group.is_freed].tolist():
+        for number in group.numbers[~group.is_freed | freed].tolist():
             name = f"{group.group.name}_{number + 1}"
             while name in taken:
                 name += "_"
