@@ -29,7 +29,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import solve_triangular
 from scipy.spatial.distance import cdist
 
 from pinwarp.core import kernel
@@ -37,7 +36,13 @@ from pinwarp.core.errors import LandmarkError, PenaltyError, SingularSystemError
 from pinwarp.core.factor import is_well_spaced
 from pinwarp.core.householder import Reflections
 from pinwarp.core.positions import as_positions
-from pinwarp.core.spline import PenaltyConvention, Spline, cholesky_solve
+from pinwarp.core.spline import (
+    PenaltyConvention,
+    Spline,
+    cholesky,
+    cholesky_solve,
+    cholesky_solve_again,
+)
 
 Matrix = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -276,11 +281,9 @@ class ConditionFactor:
         """Return ``N^-1 values``, of least norm where places coincide."""
         matrix = shifted[AFFINE:, AFFINE:]
         if self.well_spaced:
-            if shifted is self.projected and self.lower is not None:
-                half = solve_triangular(self.lower, values, lower=True, check_finite=False)
-                return np.asarray(
-                    solve_triangular(self.lower, half, lower=True, trans=1, check_finite=False)
-                )
+            # Who solves once has no use for the factor itself.
+            if shifted is self.projected and self.is_prepared and self.lower is not None:
+                return cholesky_solve_again(self.lower, values)
             solved = cholesky_solve(matrix.copy(), values)
             if solved is not None:
                 return solved
@@ -289,13 +292,15 @@ class ConditionFactor:
         inverse = np.divide(1.0, numbers, out=np.zeros_like(numbers), where=numbers > least)
         return np.asarray(vectors @ (inverse[:, None] * (vectors.T @ values)))
 
+    @property
+    def is_prepared(self) -> bool:
+        """Whether the Cholesky factor is there already."""
+        return "lower" in self.__dict__
+
     @cached_property
     def lower(self) -> Matrix | None:
         """The Cholesky factor of N without penalties, for solve after solve; None without one."""
-        try:
-            return np.asarray(np.linalg.cholesky(self.projected[AFFINE:, AFFINE:]))
-        except np.linalg.LinAlgError:
-            return None
+        return cholesky(self.projected[AFFINE:, AFFINE:].copy())
 
 
 def factorise_conditions(source: ArrayLike, conditions: Conditions) -> ConditionFactor:

@@ -17,7 +17,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solve_triangular
-from scipy.linalg.lapack import dposv
+from scipy.linalg.lapack import dposv, dpotrf
 from scipy.spatial.distance import pdist
 
 from pinwarp.core import kernel
@@ -332,17 +332,35 @@ def cholesky_solve(matrix: Matrix, values: Matrix) -> Matrix | None:
     values
         (n, k).
     """
-    in_worker = threading.current_thread() is not threading.main_thread()
-    if len(matrix) <= HOLDS_UP_LITTLE or not in_worker:
+    if _holds_up_little(len(matrix)):
         # Symmetric: the transpose is the same matrix in the order that LAPACK wants.
         _, solved, info = dposv(matrix.T, values, lower=1, overwrite_a=1)
         return np.asarray(solved) if info == 0 else None
+    lower = cholesky(matrix)
+    return None if lower is None else cholesky_solve_again(lower, values)
+
+
+def cholesky(matrix: Matrix) -> Matrix | None:
+    """Return the lower factor of a symmetric matrix, overwritten; None where it has none."""
+    if _holds_up_little(len(matrix)):
+        lower, info = dpotrf(matrix.T, lower=1, overwrite_a=1)
+        return np.asarray(lower) if info == 0 else None
     try:
-        lower = np.linalg.cholesky(matrix)
+        return np.asarray(np.linalg.cholesky(matrix))
     except np.linalg.LinAlgError:
         return None
+
+
+def cholesky_solve_again(lower: Matrix, values: Matrix) -> Matrix:
+    """Solve ``lower lower^T x = values``."""
     half = solve_triangular(lower, values, lower=True, check_finite=False)
     return np.asarray(solve_triangular(lower, half, lower=True, trans=1, check_finite=False))
+
+
+def _holds_up_little(size: int) -> bool:
+    """Whether LAPACK may be called through scipy here, with the interpreter's lock."""
+    is_worker = threading.current_thread() is not threading.main_thread()
+    return size <= HOLDS_UP_LITTLE or not is_worker
 
 
 def _check_poles(factor: SourceFactor, penalty: float) -> tuple[Finding, ...]:
