@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -8,6 +10,7 @@ from scipy.interpolate import RBFInterpolator
 from scipy.spatial.distance import cdist
 from tests.core.strategies import landmark_pairs
 
+from pinwarp.core import spline
 from pinwarp.core.conditions import (
     Conditions,
     across,
@@ -268,3 +271,19 @@ def test_the_energy_of_a_soft_solve_is_no_larger_than_that_of_a_strict_one():
     factor = factorise_conditions(source, held(range(20)))
     energies = [bending_energy(factor.solve(destination, s)).sum() for s in (0.0, 0.1, 1.0, 10.0)]
     assert energies == sorted(energies, reverse=True)
+
+
+def test_a_worker_solves_the_same_once_and_again(monkeypatch):
+    rng = np.random.default_rng(1)
+    source, destination = rng.normal(size=(2, 20, 3))
+    expected = factorise_conditions(source, held(range(20))).solve(destination)
+    # As with some thousand conditions, where LAPACK may not keep the interpreter's lock.
+    monkeypatch.setattr(spline, "HOLDS_UP_LITTLE", 0)
+    factor = factorise_conditions(source, held(range(20)))
+    with ThreadPoolExecutor(1) as worker:
+        once = worker.submit(factor.solve, destination).result()
+        assert not factor.is_prepared
+        assert worker.submit(lambda: factor.lower).result() is not None
+        again = worker.submit(factor.solve, destination).result()
+    for warp in (once, again):
+        np.testing.assert_allclose(warp.weights, expected.weights, atol=1e-11)
