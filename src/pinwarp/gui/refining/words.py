@@ -30,6 +30,9 @@ BUSY = "A refinement or its check is under way already."
 TURN, TURN_BACK = "Turn It Round and Refine", "Refine Them as They Are"
 ALREADY_TURNED = "Taken the other way round, the surfaces face opposite ways: they fit as they are."
 
+# Of the places; where fewer were fitted, a part of the destination is missing.
+COVERED = 0.9
+
 
 def level_in_words(level: Level, unit: str) -> str:
     """Say which level is drawn.
@@ -72,6 +75,10 @@ def refined_in_words(
         f"Refined: {fitted:,} of {counted(refined.places, 'place')} fitted, features larger than "
         f"{feature}."
     ]
+    if fitted < COVERED * refined.places:
+        words.append(
+            f"{refined.places - fitted:,} have no counterpart: the warp is a guess around them."
+        )
     if refined.landmark_tolerance > 0:
         words.append(f"Landmark tolerance {format_length(refined.landmark_tolerance, unit, 3)}.")
     if refined.folding:
