@@ -7,15 +7,19 @@ from datetime import datetime
 
 import numpy as np
 import pytest
-from tests.core.bones import bone, landmarks, truth
+from tests.core.bones import bone, landmarks, shape, truth
 
 from pinwarp.core.components import Components
+from pinwarp.core.curves import PathFinder
 from pinwarp.core.errors import PinwarpError
+from pinwarp.core.gathering import course_of, path_of
+from pinwarp.core.groups import Handle
 from pinwarp.core.landmarks import Landmark, Role, Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.readiness import InsideOutError
 from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import PenaltyConvention
+from pinwarp.core.surface import Surface
 from pinwarp.io.meshes import read_mesh, write_mesh
 from pinwarp.session import edits
 from pinwarp.session.judging.check import check
@@ -291,3 +295,41 @@ def test_the_sessions_penalty_is_the_landmarks_tolerance_unless_told_otherwise(b
     strict = refined_session(soft, replace(COARSE, landmark_tolerance=0.0))[0]
     assert strict.refinement.landmark_tolerance == 0.0
     assert check(strict).rms_residual < 1e-9
+
+
+def test_a_curve_drawn_on_both_bones_is_kept_to_and_its_change_puts_out_of_date(begun):
+    finders = {side: PathFinder(Surface(begun.mesh(side))) for side in Side}
+    angles, heights = np.full(3, 0.4), np.array([0.8, 1.2, 1.6])
+    handles = [Handle(as_position(place)) for place in shape(angles, heights)]
+    ghost, _ = edits.add_curve(begun, handles, finders[Side.SOURCE], count=9)
+    # Somebody saw the crest a little further round than the surface alone would take it.
+    there = truth(shape(angles + 0.15, heights))
+    drawn = edits.accept_curve(ghost, "curve_1", [as_position(place) for place in there])
+    kept, found = refined_session(drawn, COARSE)
+    free, _ = refined_session(ghost, COARSE)
+    assert found.fitted == len(kept.refinement.source) - len(begun.pairs)
+    course = course_of(drawn.group("curve_1"), finders[Side.SOURCE])
+    path = path_of(drawn.group("curve_1"), finders[Side.DESTINATION], Side.DESTINATION)
+    misses = []
+    for session in (kept, free):
+        carried = solved(session).applied.evaluate(course.points)
+        misses.append(np.linalg.norm(carried - path.closest(carried)[0], axis=1).max())
+    assert misses[0] < 0.1 * misses[1]
+    assert solved(kept).residuals.max() < 1e-9
+    assert refinement_in_use(kept) is not None
+    assert is_out_of_date(edits.set_count(kept, "curve_1", 4, finders[Side.SOURCE]))
+    # A curve that is only a ghost does not act on it.
+    assert refinement_in_use(edits.remove_groups(free, ["curve_1"])) is not None
+
+
+def test_leaving_out_an_anchor_leaves_out_its_curve(begun):
+    """The curve ends in the landmark's destination: it would tell what is to be predicted."""
+    finders = {side: PathFinder(Surface(begun.mesh(side))) for side in Side}
+    ends = begun.pairs[:2]
+    handles = [Handle(end.source, landmark=end.name) for end in ends]
+    ghost, _ = edits.add_curve(begun, handles, finders[Side.SOURCE], count=3)
+    drawn = edits.accept_curve(ghost, "curve_1", [end.destination for end in ends])
+    rough = RefinementOptions(smallest_feature=60.0)
+    plain, with_curve = verified(begun, rough), verified(drawn, rough)
+    np.testing.assert_array_equal(with_curve.after[:2], plain.after[:2])
+    assert (with_curve.after[2:] != plain.after[2:]).all()

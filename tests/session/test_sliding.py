@@ -244,6 +244,7 @@ def test_the_file_gives_back_groups_and_rest_and_needs_no_mesh_for_it(grouped, a
 def test_a_refined_session_warps_as_it_was_refined(grouped):
     refined, _ = refined_session(grouped, RefinementOptions(smallest_feature=60.0))
     assert rest_of(refined).semilandmarks is None
+    assert "nothing slides meanwhile" in rest_of(refined).not_sliding
     alone = rest_of(replace(refined, groups=()))
     np.testing.assert_array_equal(rest_of(refined).vertices, alone.vertices)
 

@@ -20,7 +20,7 @@ places around get stiffer until none is.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,8 +32,10 @@ from pinwarp.core.conditions import (
     Conditions,
     factorise_conditions,
     held,
+    held_across,
     held_along,
 )
+from pinwarp.core.curves import CurvePath
 from pinwarp.core.errors import LandmarkError
 from pinwarp.core.features import FEWEST_PLACES, levels_to, places_for
 from pinwarp.core.fold_control import FoldControl
@@ -94,6 +96,22 @@ class RefinementSettings:
         if feature is not None and not (feature > 0 and np.isfinite(feature)):
             raise LandmarkError(f"The smallest feature is {feature}; it must be longer than 0.")
         check_penalty(self.landmark_tolerance)
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnPoints:
+    """Points of a curve that somebody drew on both surfaces.
+
+    Attributes
+    ----------
+    source : (k, 3) float64
+        In their order on the source, landmarks not among them.
+    path
+        The curve on the destination.
+    """
+
+    source: Matrix
+    path: CurvePath
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,6 +189,7 @@ def refine(
     destination_landmarks: ArrayLike,
     settings: RefinementSettings | None = None,
     *,
+    curves: Sequence[DrawnPoints] = (),
     told: Callable[[Level], None] = lambda _level: None,
     progress: Callable[[float, str], None] = lambda _share, _words: None,
 ) -> Refinement:
@@ -187,6 +206,9 @@ def refine(
         (n, 3) row by row the same places; at least four, not in one plane.
     settings
         How.
+    curves
+        Points of curves that somebody drew on both surfaces: they stay on their curve, within the
+        tolerance of the landmarks.
     told
         Called after each level.
     progress
@@ -220,7 +242,9 @@ def refine(
     settings = settings or RefinementSettings()
     if settings.turn_destination:
         destination = Mesh(destination.vertices, destination.faces[:, ::-1])
-    run = _Run(source, Surface(destination), source_landmarks, destination_landmarks, settings)
+    run = _Run(
+        source, Surface(destination), source_landmarks, destination_landmarks, settings, curves
+    )
     levels: list[Level] = []
     for number, feature in enumerate(run.features, 1):
         for turn in range(TURNS if feature == run.features[-1] else 1):
@@ -260,7 +284,11 @@ class _Run:
         source_landmarks: ArrayLike,
         destination_landmarks: ArrayLike,
         settings: RefinementSettings,
+        curves: Sequence[DrawnPoints],
     ) -> None:
+        self.curves = curves
+        on_curves = [np.zeros((0, 3)), *(curve.source for curve in curves)]
+        self.on_curves = np.vstack(on_curves)
         self.first = starting_warp(
             source_landmarks, destination_landmarks, settings.landmark_tolerance
         )
@@ -268,7 +296,8 @@ class _Run:
         self.surface, self.tolerance = surface, settings.landmark_tolerance
         self.area = float(triangle_areas(source).sum())
         count = places_for(self.area, settings.smallest_feature)
-        positions, triangles = spread_places(source, count, self.first.source)
+        taken = np.vstack([self.first.source, self.on_curves])
+        positions, triangles = spread_places(source, count, taken)
         self.places = Surface(source).at(triangles, positions)
         self.spacing = float(np.sqrt(self.area / count))
         self.features = levels_to(settings.smallest_feature or self.spacing, source.diagonal)
@@ -302,14 +331,18 @@ class _Run:
         weights = self._weights(now, met)
         kept = np.flatnonzero(weights > WORTH_KEEPING)
         self.kept = len(kept)
-        first = len(self.destination)
-        rows = first + np.arange(self.kept)
-        conditions = [held(np.arange(first)), held_along(rows, met.normals[kept])]
+        along, tangents = self._along()
+        first, second = len(self.destination), len(self.destination) + len(along)
+        conditions = [
+            held(np.arange(first)),
+            held_across(np.arange(first, second), tangents),
+            held_along(second + np.arange(self.kept), met.normals[kept]),
+        ]
         factor = factorise_conditions(
-            np.vstack([self.first.source, self.places.positions[kept]]),
+            np.vstack([self.first.source, self.on_curves, self.places.positions[kept]]),
             Conditions.joined(conditions),
         )
-        aims = np.vstack([self.destination, met.positions[kept]])
+        aims = np.vstack([self.destination, along, met.positions[kept]])
         softness = len(kept) / self.area * feature**3 / (2 * np.pi) ** 2 / weights[kept]
         is_final = is_last or (
             feature == self.features[-1] and self.move < SETTLED * self.growth * self.spacing
@@ -332,8 +365,23 @@ class _Run:
         return is_final
 
     def _solved(self, factor: ConditionFactor, aims: Matrix, softness: Matrix) -> Spline:
-        landmarks = np.full(3 * len(self.destination), self.tolerance)
-        return factor.solve(aims, np.concatenate([landmarks, softness]))
+        # Landmarks and what is on curves come first.
+        known = np.full(len(factor.conditions.rows) - len(softness), self.tolerance)
+        return factor.solve(aims, np.concatenate([known, softness]))
+
+    def _along(self) -> tuple[Matrix, Matrix]:
+        """Return where the points of curves belong now, and the tangents there."""
+        now = self.spline.evaluate(self.on_curves)
+        ends = np.cumsum([len(curve.source) for curve in self.curves])[:-1]
+        met = [
+            curve.path.closest(part)
+            for curve, part in zip(self.curves, np.split(now, ends), strict=False)
+        ]
+        none = np.zeros((0, 3))
+        return (
+            np.vstack([none, *(positions for positions, _ in met)]),
+            np.vstack([none, *(tangents for _, tangents in met)]),
+        )
 
     def _weights(self, now: Matrix, met: Places) -> Matrix:
         """Return how much each place counts, from 0 to 1."""

@@ -5,8 +5,10 @@ from __future__ import annotations
 import functools
 import hashlib
 from collections.abc import Sequence
+from dataclasses import replace
 
 from pinwarp.core.factor import factorise
+from pinwarp.core.groups import Curve
 from pinwarp.core.landmarks import Side
 from pinwarp.core.spline import Spline, solve
 from pinwarp.core.words import counted
@@ -81,6 +83,17 @@ def fitted_names(count: int, landmarks: Sequence[str]) -> list[str]:
     return [f"{start}{number}" for number in range(1, count + 1)]
 
 
+def drawn_curves(session: Session) -> tuple[Curve, ...]:
+    """Return the curves that somebody drew on both bones.
+
+    Examples
+    --------
+    >>> drawn_curves(Session())
+    ()
+    """
+    return tuple(x for x in session.groups if isinstance(x, Curve) and x.is_drawn)
+
+
 def inputs_of(session: Session) -> str:
     """Return a hash of all in a session that a refinement depends on.
 
@@ -93,6 +106,8 @@ def inputs_of(session: Session) -> str:
         tuple(None if x is None else (x.sha256, x.mirrored, float(x.scaled)) for x in meshes),
         # As files say it: a setting that is yet to come and as usual puts nothing out of date.
         tuple(line for always in (True, False) for line in setting_lines(settings, always=always)),
+        # Other curves and patches do not act on it.
+        *((replace(x, excluded=frozenset()), sorted(x.excluded)) for x in drawn_curves(session)),
     )
     return f"sha256:{hashlib.sha256(repr(parts).encode()).hexdigest()[:32]}"
 

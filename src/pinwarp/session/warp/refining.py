@@ -10,19 +10,22 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from pinwarp.core.curves import PathFinder
 from pinwarp.core.errors import LandmarkError, MeshError, PinwarpError
 from pinwarp.core.factor import factorise
+from pinwarp.core.gathering import gathered
 from pinwarp.core.landmarks import Side, as_position, positions
 from pinwarp.core.lengths import rms
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.quality import leave_one_out
 from pinwarp.core.readiness import check_count
-from pinwarp.core.refinement import Level, Refinement, RefinementSettings, refine
+from pinwarp.core.refinement import DrawnPoints, Level, Refinement, RefinementSettings, refine
 from pinwarp.core.spline import Spline
+from pinwarp.core.surface import Surface
 from pinwarp.core.words import listed
 from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.session.session import Session
-from pinwarp.session.warp.refined import inputs_of
+from pinwarp.session.warp.refined import drawn_curves, inputs_of
 
 Matrix = NDArray[np.float64]
 
@@ -99,7 +102,7 @@ def refined_session(
     >>> found.fitted > 100, refined.refinement is not None, session.refinement is None
     (True, True, True)
     """
-    given = _Given.of(session, options or RefinementOptions())
+    given = _Given.of(session, options or RefinementOptions()).with_curves(session)
     _refuse_coincident(session)
     found = given.refine(told, progress)
     record = replace(
@@ -246,7 +249,7 @@ def verified(
     """
     if options is None and session.refinement is not None:
         options = RefinementOptions.of(session.refinement)
-    given = _Given.of(session, options or RefinementOptions())
+    given = _Given.of(session, options or RefinementOptions()).with_curves(session)
     _refuse_coincident(session)
     names = tuple(pair.name for pair in session.pairs)
     if len(names) < LEAST_PAIRS:
@@ -257,15 +260,13 @@ def verified(
     left_out = leave_one_out(factorise(u), v, given.settings.landmark_tolerance)
     after, problems = np.full(len(names), np.nan), []
     for row, name in enumerate(names):
-        kept = np.arange(len(names)) != row
 
         def within(share: float, _words: str, row: int = row) -> None:
             words = f"refining without landmark {row + 1} of {len(names)}"
             progress((row + share) / len(names), words)
 
-        without = replace(given, landmarks=(u[kept], v[kept]))
         try:
-            spline = without.refine(lambda _level: None, within).spline
+            spline = given.without(row, name).refine(lambda _level: None, within).spline
         except (LandmarkError, MeshError) as error:
             problems.append(f"{name} cannot be left out: {error}")
             continue
@@ -281,6 +282,9 @@ class _Given:
     destination: Mesh
     landmarks: tuple[Matrix, Matrix]
     settings: RefinementSettings
+    curves: tuple[DrawnPoints, ...] = ()
+    # The landmarks that each of them is anchored to.
+    anchors: tuple[frozenset[str], ...] = ()
 
     @classmethod
     def of(cls, session: Session, options: RefinementOptions) -> _Given:
@@ -304,6 +308,35 @@ class _Given:
             RefinementSettings(options.smallest_feature, tolerance, options.turn_destination),
         )
 
+    def with_curves(self, session: Session) -> _Given:
+        """Return the same with the points of the curves that are drawn on both bones."""
+        curves = drawn_curves(session)
+        if not curves:
+            return self
+        finders = {
+            Side.SOURCE: PathFinder(Surface(self.source)),
+            Side.DESTINATION: PathFinder(Surface(self.destination)),
+        }
+        named = {pair.name: pair.source for pair in session.pairs if pair.source is not None}
+        found = gathered(curves, named, finders[Side.SOURCE], lambda: finders[Side.DESTINATION])
+        points = []
+        for curve in found.semilandmarks.curves:
+            own = curve.rows[curve.rows >= len(named)] - len(named)
+            assert curve.path is not None, "only what is drawn was gathered"
+            points.append(DrawnPoints(found.semilandmarks.source[own], curve.path))
+        # One of which no point takes part is not among them.
+        held = [x for x, numbers in zip(curves, found.numbers, strict=True) if len(numbers)]
+        anchors = tuple(frozenset(handle.landmark for handle in x.anchors) for x in held)
+        return replace(self, curves=tuple(points), anchors=anchors)
+
+    def without(self, row: int, name: str) -> _Given:
+        """Return the same without a landmark, and without the curves that are anchored to it."""
+        u, v = (np.delete(places, row, axis=0) for places in self.landmarks)
+        both = zip(self.curves, self.anchors, strict=True)
+        kept = [(curve, anchors) for curve, anchors in both if name not in anchors]
+        curves, anchors = (tuple(x for x, _ in kept), tuple(x for _, x in kept))
+        return replace(self, landmarks=(u, v), curves=curves, anchors=anchors)
+
     def refine(
         self, told: Callable[[Level], None], progress: Callable[[float, str], None]
     ) -> Refinement:
@@ -314,6 +347,7 @@ class _Given:
                 self.destination,
                 *self.landmarks,
                 self.settings,
+                curves=self.curves,
                 told=told,
                 progress=progress,
             )

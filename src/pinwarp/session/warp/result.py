@@ -51,8 +51,7 @@ class WarpInputs:
         destination = tuple(pair.destination for pair in pairs if pair.destination is not None)
         refinement = refinement_in_use(session)
         sliding = None
-        # What is refined was fitted to the surface already.
-        if session.groups and refinement is None:
+        if session.groups:
             has_both = all(session.mesh(side) is not None for side in Side)
             sliding = SlidingInputs.of(session, None if has_both else rest_in_use(session))
         return cls(

@@ -33,6 +33,12 @@ Matrix = NDArray[np.float64]
 EAGER_MODES = 300
 
 
+FITTED = (
+    "The warp is refined to the surface, and nothing slides meanwhile: it keeps to the curves that "
+    "are drawn on both bones."
+)
+
+
 class WarpSolver:
     """Solves sessions, keeping what the next one may share. For use by one thread at a time.
 
@@ -186,6 +192,8 @@ class WarpSolver:
         """Return the semilandmarks at rest, or why there are none."""
         if inputs.sliding is None:
             return None, None
+        if inputs.refinement is not None:
+            return None, FITTED
         last = self._last
         if moving and last is not None and last.inputs.sliding is not None:
             was, now = last.inputs.sliding, inputs.sliding
