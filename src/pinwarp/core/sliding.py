@@ -99,10 +99,12 @@ class Slid:
     ----------
     positions : (k, 3) float64
         On the destination; of freed ones, where the warp carries them.
+    start : (k, 3) float64
+        Where the landmarks alone put them.
     is_freed : (k,) bool
         Which have no counterpart.
     slid : (k,)
-        How far each went from where the landmarks alone put it, in destination mesh units.
+        How far each went from its start, in destination mesh units.
     energies
         The bending energy, up to 8 pi and summed over the axes, of each turn: never rising.
     converged
@@ -116,6 +118,7 @@ class Slid:
     """
 
     positions: Matrix
+    start: Matrix
     is_freed: Mask
     slid: Matrix
     energies: tuple[float, ...]
@@ -216,6 +219,7 @@ def slide(
     own = slice(task.landmarks, None)
     return Slid(
         positions=positions[own],
+        start=start.positions[own],
         is_freed=here.is_freed[own],
         slid=np.linalg.norm(positions - start.positions, axis=1)[own],
         energies=tuple(energies),

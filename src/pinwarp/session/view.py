@@ -66,6 +66,10 @@ class ViewState:
         Whether all landmarks are frozen.
     guided
         The landmark that the guide asks for; None without a guide.
+    group
+        The curve or patch that is worked on; empty for none.
+    slides
+        Whether arrows show how far semilandmarks slid.
     name_pattern
         What new landmarks are called.
     nudge
@@ -97,6 +101,8 @@ class ViewState:
     hovered: str | None = None
     locked: bool = False
     guided: str | None = None
+    group: str = ""
+    slides: bool = False
     name_pattern: str = NAME_PATTERN
     nudge: float | None = None
     link: LinkMode = LinkMode.LINKED
@@ -126,6 +132,8 @@ class ViewChanges(TypedDict, total=False):
     hovered: str | None
     locked: bool
     guided: str | None
+    group: str
+    slides: bool
     name_pattern: str
     nudge: float | None
     link: LinkMode

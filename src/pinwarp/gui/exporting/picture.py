@@ -15,7 +15,16 @@ from pinwarp.core.landmarks import Side
 from pinwarp.gui.exporting.offscreen import Offscreen, Tile
 from pinwarp.gui.painted.legend import PaintedLegend
 from pinwarp.gui.painted.marker_layer import MarkerLayer
-from pinwarp.gui.scene.drawables import Arrows, Caption, Legend, Markers, ScaleBar
+from pinwarp.gui.scene.drawables import (
+    Arrows,
+    Caption,
+    Dots,
+    Legend,
+    Markers,
+    Paths,
+    ScaleBar,
+    Slides,
+)
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.style import theme
 from pinwarp.gui.tasks.stepped_job import Steps
@@ -166,7 +175,7 @@ def _paint_landmarks(image: QImage, order: PictureOrder, view: Canvas, place: QR
 def _painted(order: PictureOrder, view: Canvas) -> Scene:
     """Return what is painted into a picture, of all that a view shows."""
     framing = (Caption, ScaleBar, Legend) if order.framed else ()
-    placed = (Markers, Arrows) if order.landmarks else ()
+    placed = (Markers, Arrows, Dots, Paths, Slides) if order.landmarks else ()
     scene = view.scene.only(*framing, *placed)
     signs = scene.of(Markers)
     if signs is None:

@@ -74,6 +74,19 @@ def meaning_of(kind: MapKind | None, *, fitted: bool) -> str:
     return f"{MEANINGS[kind]} {more}".rstrip()
 
 
+def title_of(kind: MapKind, *, fitted: bool) -> str:
+    """Return what a map is called.
+
+    Parameters
+    ----------
+    kind
+        Which.
+    fitted
+        Whether the warp was fitted to the surface that distances are measured to.
+    """
+    return f"{TITLES[kind]} (fitted)" if fitted and kind is MapKind.DISTANCE else TITLES[kind]
+
+
 def note_of(found: SurfaceMap, unit: str) -> str:
     """Return the unit of a map, or what its ratios are relative to."""
     if found.kind is MapKind.UNCERTAINTY:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from qtpy.QtCore import QPointF, QRectF, Qt
+from qtpy.QtCore import QPointF, QRectF, Qt, QTimer
 from qtpy.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen
 from qtpy.QtWidgets import QWidget
 
@@ -30,22 +30,31 @@ from pinwarp.gui.painted.markers import (
     marker_pixmap,
 )
 from pinwarp.gui.painted.scale_bar import paint_scale_bar
+from pinwarp.gui.painted.semilandmarks import SemilandmarkPainter
 from pinwarp.gui.scene.drawables import (
     Arrows,
     Badge,
     Caption,
+    CurveHandle,
+    Dots,
     Drawable,
+    Handles,
     Hint,
     Marker,
     Markers,
+    Paths,
     ScaleBar,
+    Slides,
     Star,
+    ToolWords,
 )
 from pinwarp.gui.scene.projection import Projection
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.style import theme
 from pinwarp.session.warp.ghost import Ghost
 
+# After so long more is found out about what the bone hides.
+_AGAIN_MS = 25
 _OUT_OF_SIGHT = "The bone is out of sight.\nHome looks at both bones as a whole."
 
 
@@ -65,16 +74,24 @@ class MarkerLayer(QWidget):
         self._projection = projection
         self._legend: PaintedLegend | None = None
         self._scene = Scene(Side.SOURCE)
+        self.semilandmarks = points = SemilandmarkPainter(projection, self._project)
+        self._again = QTimer(self, singleShot=True, interval=_AGAIN_MS)
+        self._again.timeout.connect(self.update)
         # In this order: what comes later lies on top.
         self._painters: dict[type[Drawable], Callable[[QPainter, Any], None]] = {
             Caption: self._paint_caption,
             ScaleBar: self._paint_scale_bar,
             Hint: self._paint_hint,
+            Paths: points.paint_paths,
+            Slides: points.paint_slides,
+            Dots: self._paint_dots,
+            Handles: self._paint_handles,
             Star: self._paint_star,
             Ghost: self._paint_ghost,
             Arrows: self._paint_arrows,
             Markers: self._paint_markers,
             Badge: self._paint_badge,
+            ToolWords: self._paint_tool_words,
         }
         self.painted_for: object = None
         # For a picture: signs in so many pixels, places seen from its middle.
@@ -118,7 +135,7 @@ class MarkerLayer(QWidget):
             return np.zeros((0, 2))
         return self._project([marker.position for marker in self.markers])
 
-    def _project(self, positions: Sequence[Position]) -> NDArray:
+    def _project(self, positions: Sequence[Position] | NDArray) -> NDArray:
         return self._projection.project(np.array(positions)) + self.offset
 
     def hidden(self) -> NDArray[np.bool_]:
@@ -144,6 +161,11 @@ class MarkerLayer(QWidget):
             self.markers[index] if distances[index] <= max(within, self._signs.radius + 2) else None
         )
 
+    def nearest_handle(self, at: QPointF, within: float) -> CurveHandle | None:
+        """Return the seen handle of a curve nearest to a place on the screen, if near enough."""
+        handles = self._scene.of(Handles)
+        return None if handles is None else self.semilandmarks.nearest_handle(handles, at, within)
+
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Paint what the scene holds for this sheet."""
         self.painted_for = self._projection.view_key()
@@ -156,6 +178,8 @@ class MarkerLayer(QWidget):
                     paint(painter, thing)
             if self.is_bone_lost and self._scene.of(Hint) is None:
                 self._paint_hint(painter, Hint(_OUT_OF_SIGHT))
+        if self.semilandmarks.is_stale:
+            self._again.start()
 
     @property
     def is_bone_lost(self) -> bool:
@@ -191,6 +215,32 @@ class MarkerLayer(QWidget):
         painter.drawRoundedRect(plate, 10, 10)
         painter.setPen(QColor(theme.INK))
         painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, hint.words)
+
+    def _paint_dots(self, painter: QPainter, dots: Dots) -> None:
+        self.semilandmarks.paint_dots(painter, dots, self._ratio)
+
+    def _paint_handles(self, painter: QPainter, handles: Handles) -> None:
+        self.semilandmarks.paint_handles(painter, handles, self._ratio)
+
+    @property
+    def _ratio(self) -> float:
+        """How many pixels of the screen, or of a picture, make a logical one."""
+        return self.devicePixelRatioF() * self.pixels_per_pixel
+
+    def _paint_tool_words(self, painter: QPainter, tool: ToolWords) -> None:
+        """Say at the lower edge what to do, in as many lines as it takes."""
+        room = QRectF(0, 0, min(460, self.width() - 24) - 20, self.height() / 2)
+        flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
+        words = painter.boundingRect(room, flags, tool.words)
+        plate = words.adjusted(-10, -5, 10, 5)
+        # Above the scale bar.
+        plate.moveBottom(self.height() - 44)
+        plate.moveLeft((self.width() - plate.width()) / 2)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(theme.INK))
+        painter.drawRoundedRect(plate, 6, 6)
+        painter.setPen(QColor(theme.PAPER))
+        painter.drawText(plate, flags, tool.words)
 
     def _paint_badge(self, painter: QPainter, badge: Badge) -> None:
         metrics, margin = painter.fontMetrics(), 10
@@ -270,7 +320,7 @@ class MarkerLayer(QWidget):
     def _paint_markers(self, painter: QPainter, shown: Markers) -> None:
         markers, radius = shown.markers, shown.radius
         places, hidden = self.places(), self.hidden()
-        ratio = self.devicePixelRatioF() * self.pixels_per_pixel
+        ratio = self._ratio
         # Hidden ones first, selected ones last, so that what matters lies on top.
         order = sorted(
             range(len(markers)),

@@ -45,6 +45,7 @@ _CONVENTIONS = {
     PenaltyConvention.OPYNSIM: "OPynSim (published)",
 }
 _NO_CURVE = "From five pairs on, leave-one-out error and residual are drawn here."
+_NO_SUGGESTION = "With semilandmarks no penalty is suggested."
 _OTHER_CONVENTION = "The curve and its suggestion are of the regularising convention."
 
 
@@ -214,6 +215,12 @@ class PenaltyPanel(QWidget):
         self._show_present()
 
     @property
+    def _without_suggestion(self) -> str:
+        """Why the pairs draw no curve, where that is not for want of pairs."""
+        slides = self._result is not None and self._result.semilandmarks is not None
+        return _NO_SUGGESTION if slides else ""
+
+    @property
     def _curve(self) -> PenaltyCurve | None:
         return self._quality.curve if self._quality is not None else None
 
@@ -221,7 +228,9 @@ class PenaltyPanel(QWidget):
         curve, factor, unit = self._curve, self._factor, self._session.unit
         if curve is None or factor is None or self._quality is None:
             count = len(self._result.inputs.source) if self._result is not None else 0
-            self.plot.show_curve(None, _NO_CURVE if count < LEAST_PAIRS else "")
+            self.plot.show_curve(
+                None, self._without_suggestion or _NO_CURVE * (count < LEAST_PAIRS)
+            )
         else:
             regular = self._session.settings.convention is PenaltyConvention.REGULARISING
             title = [f"RMS over {len(self._quality.inputs.source)} pairs"]
@@ -242,7 +251,8 @@ class PenaltyPanel(QWidget):
         curve, penalty = self._curve, self.suggestion
         there = penalty is not None and penalty == self._session.settings.penalty
         self.suggested.setEnabled(penalty is not None and not there)
-        words, tip = "No penalty suggested", penalty_advice(curve) if curve is not None else ""
+        words = "No penalty suggested"
+        tip = penalty_advice(curve) if curve is not None else self._without_suggestion
         if penalty is not None:
             length = format_length(penalty, self._session.unit, 3)
             words = f"At suggested: {length}" if there else f"Use suggested: {length}"
@@ -258,10 +268,18 @@ class PenaltyPanel(QWidget):
         share = self._share_of(session.settings.penalty)
         figures = self._figures_at(session.settings.penalty, share)
         unit = unit_on(session, Side.DESTINATION)
-        self.figures.show_left_out(figures[0] if figures else math.nan, unit)
+        left_out = figures[0] if figures else self._left_out_alone()
+        self.figures.show_left_out(left_out, unit)
         has_place = self._factor is not None and len(self._factor.poles) > 0
         self.plot.show_present(share if has_place else None, figures)
         self._show_suggestion()
+
+    def _left_out_alone(self) -> float:
+        """Return the leave-one-out error where semilandmarks slide: it has no curve then."""
+        quality, penalty = self._quality, self._session.settings.penalty
+        if quality is None or quality.left_out is None or not self._without_suggestion:
+            return math.nan
+        return quality.left_out.rms if quality.inputs.settings.penalty == penalty else math.nan
 
     def _figures_at(self, penalty: float, share: float) -> tuple[float, float] | None:
         """Return leave-one-out error and residual: as solved, else as the curve has them."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from qtpy.QtWidgets import QLabel
 
 from pinwarp.core.landmarks import Side
@@ -43,6 +45,7 @@ class Guidance(Capability):
         self._hand = hand
         self._ghosts = ghosts
         self._tasks = tasks
+        self._others: list[Callable[[], str]] = []
         self.bar = bar = GuideBar()
         self.above = (bar,)
         self.hint = QLabel()
@@ -114,8 +117,16 @@ class Guidance(Capability):
         self.bar.show_step(session, step_at(session, guided) if guided and is_there else None)
         self._show_hint()
 
+    def give_way_to(self, words: Callable[[], str]) -> None:
+        """Let somebody else say what a click would do, while it has words for that."""
+        self._others.append(words)
+
     def _show_hint(self) -> None:
         """Say what a click would do right now."""
+        said = next((said for words in self._others if (said := words())), "")
+        if said:
+            self.hint.setText(said)
+            return
         editor, session = self._editor, self._editor.session
         if editor.view.hovered is not None:
             self.hint.setText(self._hover_words(editor.view.hovered))

@@ -52,6 +52,7 @@ class Hand(Capability):
         self._editor = editor
         self._viewports = viewports
         self._ghosts = ghosts
+        self._others: list[Callable[[bool], bool]] = []
         self.snap_action = Action(
             "snap",
             "S&nap to Surface",
@@ -169,11 +170,26 @@ class Hand(Capability):
         )
         self._placed(session, f"Place {name}", name, side)
 
+    def share_accepting(self, accept: Callable[[bool], bool]) -> None:
+        """Let somebody else accept ghosts of its own by the same key.
+
+        Parameters
+        ----------
+        accept
+            Called with whether only a ghost that the user chose is meant: this is asked before
+            landmarks, all others behind them. Says whether it accepted one.
+        """
+        self._others.append(accept)
+
     def accept_ghost(self) -> None:
         """Place the landmark that a ghost predicts, on the side that was worked on last if any."""
+        if any(accept(True) for accept in self._others):
+            return
         side = self._editor.selection.side
         ghost = self._ghosts.at(side.other) or self._ghosts.at(side)
         if ghost is None:
+            if any(accept(False) for accept in self._others):
+                return
             self.refused.emit(
                 "There is nothing to accept: from the third pair on, a landmark placed on one side "
                 "shows its ghost on the other."
@@ -274,6 +290,10 @@ class Hand(Capability):
             session = edits.move(session, name, side, as_position(move(np.array(position))))
         key = f"{verb} {names} {side}" if merge else None
         editor.commit(session, f"{verb} {in_words(names)}", key)
+
+    def refuse_locked(self) -> bool:
+        """Say whether nothing may be moved, telling the user so."""
+        return self._is_locked()
 
     def _is_locked(self, landmark: Landmark | None = None) -> bool:
         """Say whether landmarks (or one of them) are frozen, telling the user so."""

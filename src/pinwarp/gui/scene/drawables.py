@@ -7,6 +7,7 @@ whatever holds large arrays is the same only where it is the very same object.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import IntEnum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -178,6 +179,112 @@ class Arrows:
     arrows: tuple[Arrow, ...]
 
 
+class DotKind(IntEnum):
+    """What became of a semilandmark."""
+
+    AT_REST = 0
+    FREED = 1
+    EXCLUDED = 2
+    CHOSEN = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Dots:
+    """The semilandmarks of a side, which the mouse does not see.
+
+    Parameters
+    ----------
+    positions
+        (n, 3), in the side's frame.
+    colours
+        (n,) of which group each is, as a row of the groups' colours.
+    kinds
+        (n,) values of :class:`DotKind`.
+    """
+
+    positions: NDArray[np.float64]
+    colours: NDArray[np.int64]
+    kinds: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class PathLine:
+    """One curve over the surface of a side.
+
+    Parameters
+    ----------
+    places
+        (p, 3); a closed one ends where it begins.
+    colour
+        A row of the groups' colours.
+    is_ghost
+        Whether it is only expected there.
+    is_chosen
+        Whether it is the one that is worked on.
+    """
+
+    places: NDArray[np.float64]
+    colour: int
+    is_ghost: bool = False
+    is_chosen: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Paths:
+    """The curves of a side."""
+
+    lines: tuple[PathLine, ...]
+
+
+@dataclass(frozen=True)
+class CurveHandle:
+    """A place that a curve goes through on a side, which the hand can move.
+
+    Parameters
+    ----------
+    curve, number
+        Which one of which curve.
+    position
+        Where it is, or is expected.
+    colour
+        A row of the groups' colours.
+    is_ghost
+        Whether it is only expected there.
+    movable
+        Whether the hand may move it.
+    """
+
+    curve: str
+    number: int
+    position: Position
+    colour: int
+    is_ghost: bool = False
+    movable: bool = True
+
+
+@dataclass(frozen=True)
+class Handles:
+    """The handles of the curves of a side."""
+
+    handles: tuple[CurveHandle, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Slides:
+    """How far semilandmarks slid: (n, 3) from where to where, and their groups' colours."""
+
+    starts: NDArray[np.float64]
+    ends: NDArray[np.float64]
+    colours: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class ToolWords:
+    """What the tool that is chosen asks for now."""
+
+    words: str
+
+
 @dataclass(frozen=True)
 class Star:
     """Where the next landmark helps most, and the unit of its figure."""
@@ -242,5 +349,7 @@ class Badge:
 
 
 Rendered = Bone | Cut | Motion | Overlay | Colouring | FoldedSurface | GridLines
-Painted = Markers | Arrows | Ghost | Star | Legend | Caption | ScaleBar | Hint | Badge
+Semilandmarks = Dots | Paths | Handles | Slides
+Signs = Markers | Arrows | Ghost | Star | Semilandmarks
+Painted = Signs | Legend | Caption | ScaleBar | Hint | Badge | ToolWords
 Drawable = Rendered | Painted

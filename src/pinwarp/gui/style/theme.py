@@ -37,6 +37,9 @@ BAR_COLOUR = "#0072B2"
 ARROW_COLOUR = "#20242b"
 LEFT_OUT_COLOUR = "#D55E00"
 
+# Of curves and patches, one after the other: told apart from one another, from bones and landmarks.
+GROUP_COLOURS = ("#7a3fb0", "#b3402a", "#0e7c86", "#c2377f", "#6b6d12", "#2b4fa8")
+
 FOLD_COLOUR = "#D55E00"
 
 # Maps of lengths: even steps of lightness from dark to light, told apart without red and green.
@@ -61,6 +64,11 @@ DIVERGING_COLOURS = (
 )
 
 SPACE = 8
+
+
+def group_colour(row: int) -> QColor:
+    """Return the colour of a curve or patch by its place in the list of groups."""
+    return QColor(GROUP_COLOURS[row % len(GROUP_COLOURS)])
 
 
 def is_dark() -> bool:

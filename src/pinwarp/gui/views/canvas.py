@@ -248,10 +248,15 @@ class Canvas(SightedView):
         eye = sight.eye
         if sight.is_parallel:
             eye = eye - sight.along * 1e3 * self.surface.diagonal
-        for i, position in enumerate(positions):
-            # What is clipped away neither hides nor can be grabbed.
-            start = eye if self.section is None else self.section.entry(eye, position)
-            hidden[i] = start is None or self.surface.hides(start, position)
+        if self.section is None:
+            return self.surface.hidden(eye, np.asarray(positions))
+        starts = [self.section.entry(eye, position) for position in positions]
+        # What is clipped away neither hides nor can be grabbed.
+        seen = np.array([start is not None for start in starts], dtype=bool)
+        hidden[~seen] = True
+        if seen.any():
+            eyes = np.array([start for start in starts if start is not None])
+            hidden[seen] = self.surface.hidden(eyes, np.asarray(positions)[seen])
         return hidden
 
     def resizeEvent(self, event: QResizeEvent) -> None:

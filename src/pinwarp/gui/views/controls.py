@@ -287,6 +287,10 @@ class ViewControls(Capability):
         if not targets:
             self.fit_all()
             return
+        self.focus_on(targets)
+
+    def focus_on(self, targets: Mapping[Side, Matrix]) -> None:
+        """Look at (n, 3) places of one side or of both from nearby."""
         if not all(Pose.of(view.camera).is_proper for view in self._views.values()):
             # There is no side to look from any more.
             self.fit_all()

@@ -13,10 +13,12 @@ from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.drawn.surfaces import Surfaces
-from pinwarp.gui.scene.drawables import Marker
+from pinwarp.gui.scene.drawables import CurveHandle, Marker
 from pinwarp.gui.views.canvas import Canvas
+from pinwarp.gui.views.tool import Tool
 
-# A press released within SLOP pixels is a click; one begun within REACH of a landmark grabs it.
+# A press released within SLOP pixels is a click; one begun within REACH of a landmark
+# or a handle grabs it.
 SLOP = 4
 REACH = 10
 # The wheel has come to rest when no notch came for this long.
@@ -31,19 +33,26 @@ _ARROWS = {
 
 @dataclass
 class _Press:
-    """A left press that is not yet known to be a click, a drag of a landmark, or an orbit."""
+    """A left press that is not yet known to be a click, a drag of something, or an orbit."""
 
     at: QPointF
     event: QMouseEvent
-    marker: Marker | None
+    grip: Marker | CurveHandle | None
     offset: QPointF
     dragging: bool = False
+    twice: bool = False
 
 
 class Viewport(Canvas):
     """The picture of one side.
 
-    Positions in signals are (3,) arrays in the mesh's frame and unit.
+    Positions in signals are (3,) arrays in the mesh's frame and unit. A handle comes with its curve
+    and number, and while it is dragged with the landmark that it is dragged onto, if any.
+
+    Attributes
+    ----------
+    tool : Tool or None
+        What takes clicks before anybody else.
     """
 
     surface_clicked = Signal(object)
@@ -53,6 +62,9 @@ class Viewport(Canvas):
     landmark_clicked = Signal(str)
     landmark_dragged = Signal(str, object)
     landmark_dropped = Signal(str)
+    handle_clicked = Signal(str, int)
+    handle_dragged = Signal(str, int, object, str)
+    handle_dropped = Signal(str, int)
     drag_cancelled = Signal()
     hovered = Signal(object)
     files_dropped = Signal(list)
@@ -60,6 +72,7 @@ class Viewport(Canvas):
     def __init__(self, side: Side, surfaces: Surfaces, parent: QWidget | None = None) -> None:
         self._press: _Press | None = None
         super().__init__(side, surfaces, parent)
+        self.tool: Tool | None = None
         self._passing: Qt.MouseButton | None = None
         self._hovered: str | None = None
         self._zoom_rest = QTimer(self)
@@ -78,12 +91,12 @@ class Viewport(Canvas):
             return
         if event.button() == Qt.MouseButton.LeftButton:
             at = event.position()
-            marker = self.layer.nearest(at, REACH)
+            grip = self._grip(at)
             offset = QPointF(0, 0)
-            if marker is not None:
-                ((x, y),) = self.project(np.array([marker.position]))
+            if grip is not None:
+                ((x, y),) = self.project(np.array([grip.position]))
                 offset = QPointF(x, y) - at
-            self._press = _Press(at, QMouseEvent(event), marker, offset)
+            self._press = _Press(at, QMouseEvent(event), grip, offset)
             return
         self._pass_on(event, QEvent.Type.MouseButtonPress, Qt.MouseButton.MiddleButton)
 
@@ -100,20 +113,28 @@ class Viewport(Canvas):
         moved = event.position() - press.at
         if not press.dragging and max(abs(moved.x()), abs(moved.y())) <= SLOP:
             return
-        if press.marker is None or not press.marker.movable:
+        stays = press.grip is None or not press.grip.movable or self.tool is not None
+        if stays and not press.dragging:
             self._press = None
             self._pass_on(press.event, QEvent.Type.MouseButtonPress, Qt.MouseButton.LeftButton)
             super().mouseMoveEvent(event)
             return
+        assert press.grip is not None, "else it is an orbit"
         press.dragging = True
         at = event.position() + press.offset
         if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
             # Off the surface: a femoral head's centre lies inside the bone.
-            position: NDArray | None = self.in_view_plane(at, np.array(press.marker.position))
+            position: NDArray | None = self.in_view_plane(at, np.array(press.grip.position))
         else:
             position = self.pick(at)
-        if position is not None:
-            self.landmark_dragged.emit(press.marker.name, position)
+        if position is None:
+            return
+        if isinstance(press.grip, CurveHandle):
+            onto = self.layer.nearest(event.position(), REACH)
+            name = onto.name if onto is not None else ""
+            self.handle_dragged.emit(press.grip.curve, press.grip.number, position, name)
+        else:
+            self.landmark_dragged.emit(press.grip.name, position)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """Tell a click from the end of a drag."""
@@ -125,19 +146,29 @@ class Viewport(Canvas):
         if event.button() != Qt.MouseButton.LeftButton:
             return
         self._press = None
-        if press.dragging and press.marker is not None:
-            self.landmark_dropped.emit(press.marker.name)
-        elif press.marker is not None:
-            self.landmark_clicked.emit(press.marker.name)
+        grip = press.grip
+        if self.tool is not None and not press.dragging:
+            self.tool.click(self, press.at, press.twice)
+        elif isinstance(grip, CurveHandle):
+            done = self.handle_dropped if press.dragging else self.handle_clicked
+            done.emit(grip.curve, grip.number)
+        elif grip is not None:
+            (self.landmark_dropped if press.dragging else self.landmark_clicked).emit(grip.name)
         elif (position := self.pick(press.at)) is not None:
             with_ctrl = bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
             (self.surface_ctrl_clicked if with_ctrl else self.surface_clicked).emit(position)
         else:
             self.background_clicked.emit()
 
+    def _grip(self, at: QPointF) -> Marker | CurveHandle | None:
+        """Return what a press grabs; a landmark before a handle of a curve."""
+        return self.layer.nearest(at, REACH) or self.layer.nearest_handle(at, REACH)
+
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         """Treat a second quick click as a click of its own: it must not get lost."""
         self.mousePressEvent(event)
+        if self._press is not None:
+            self._press.twice = True
 
     def _pass_on(self, event: QMouseEvent, kind: QEvent.Type, button: Qt.MouseButton) -> None:
         """Give VTK's camera style a press or release, as the button that it knows."""
@@ -161,9 +192,11 @@ class Viewport(Canvas):
         self.stay_in_reach()
 
     def _hover(self, at: QPointF) -> None:
-        marker = self.layer.nearest(at, REACH)
-        name = marker.name if marker is not None else None
-        if marker is not None:
+        grip = self._grip(at)
+        name = grip.name if isinstance(grip, Marker) else None
+        if self.tool is not None:
+            self.tool.hover(self, at)
+        if grip is not None:
             self.setCursor(Qt.CursorShape.PointingHandCursor)
         elif self.pick(at) is not None:
             self.setCursor(Qt.CursorShape.CrossCursor)
@@ -176,6 +209,8 @@ class Viewport(Canvas):
     def leaveEvent(self, event: QEvent) -> None:
         """Nothing is hovered any more."""
         super().leaveEvent(event)
+        if self.tool is not None:
+            self.tool.hover(self, None)
         if self._hovered is not None:
             self._hovered = None
             self.hovered.emit(None)

@@ -15,6 +15,7 @@ INNER = {
     "import": ("&Import", "File.41"),
     "export": ("E&xport", "File.42"),
     "mirror": ("&Mirror Source", "Edit.73"),
+    "semilandmarks": ("&Semilandmarks", "Place.41"),
     "components": ("&Apply", "Warp.31"),
     "maps": ("Ma&ps", "View.13"),
     "grid": ("&Grid", "View.14"),

@@ -31,6 +31,7 @@ from pinwarp.gui.placing.ghosts import Ghosts
 from pinwarp.gui.placing.guidance import Guidance
 from pinwarp.gui.placing.hand import Hand
 from pinwarp.gui.refining.presenter import RefiningPresenter
+from pinwarp.gui.semilandmarks.presenter import Semilandmarks
 from pinwarp.gui.table.presenter import TablePresenter
 from pinwarp.gui.tasks.file_tasks import FileTasks
 from pinwarp.gui.views.controls import ViewControls
@@ -94,6 +95,17 @@ class Parts:
             editor, self.warps, self.hand, self.ghosts, scenes, destination, frame
         )
         self.overlay = OverlayControls(editor, self.maps)
+        self.semilandmarks = Semilandmarks(
+            editor,
+            self.warps,
+            self.hand,
+            self.guidance,
+            self.views,
+            scenes,
+            views,
+            say,
+            frame,
+        )
         self.refining = RefiningPresenter(
             editor, self.warps, self.maps, scenes, frame.long_jobs, say, frame
         )

@@ -65,7 +65,7 @@ class Survey:
     @property
     def is_fitted(self) -> bool:
         """Whether the warp was fitted to the destination's surface."""
-        return self.result.inputs.refinement is not None
+        return self.result.is_fitted
 
     @property
     def findings(self) -> tuple[Finding, ...]:

@@ -117,6 +117,11 @@ class WarpResult:
     problem: str | None = None
 
     @property
+    def is_fitted(self) -> bool:
+        """Whether it was fitted to the surface: how near it comes then proves nothing."""
+        return self.semilandmarks is not None or self.inputs.refinement is not None
+
+    @property
     def rms_residual(self) -> float | None:
         """Root mean square of the residuals, in mesh units."""
         return None if self.residuals is None else rms(self.residuals)

@@ -7,6 +7,8 @@ all exports go on as ever.
 
 from __future__ import annotations
 
+import threading
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -159,6 +161,24 @@ class SlidGroups:
         """Whether they were read where they had rested, since without a mesh nothing slides."""
         return not self.slid.energies
 
+    def places(self, targets: Matrix, spline: Spline) -> Matrix:
+        """Return (k, 3) where all of them are while something moves.
+
+        Parameters
+        ----------
+        targets
+            The destinations of the rows of the factor by then.
+        spline
+            The warp by then, which carries the freed ones.
+        """
+        places = self.slid.positions.copy()
+        freed = self.slid.is_freed
+        places[~freed] = targets[self.landmarks :]
+        if freed.any():
+            source = np.vstack([group.source for group in self.groups])
+            places[freed] = spline.evaluate(source[freed])
+        return places
+
     def left_out(self, penalty: float = 0.0) -> Matrix:
         """Return (n, 3) how far each landmark misses, left out, while the others slide on.
 
@@ -191,19 +211,48 @@ class SlidGroups:
         return factor, held.warp(destination).evaluate(factor.source)
 
 
+class Finders:
+    """Finds ways over the meshes of both sides; those of the last meshes are kept.
+
+    Any thread may ask: who comes while one is being made waits for it.
+    """
+
+    def __init__(self) -> None:
+        self._kept: dict[Side, PathFinder] = {}
+        self._lock = threading.Lock()
+
+    def of(self, side: Side, mesh: Mesh) -> PathFinder:
+        """Return what finds ways over the mesh of a side."""
+        with self._lock:
+            kept = next((x for x in self._kept.values() if x.surface.mesh is mesh), None)
+            if kept is None:
+                kept = PathFinder(Surface(mesh))
+            self._kept[side] = kept
+            return kept
+
+    def keep_only(self, meshes: Iterable[Mesh | None]) -> None:
+        """Let go of all other meshes: of sessions that are closed, nothing is kept."""
+        wanted = [id(mesh) for mesh in meshes if mesh is not None]
+        # Without the lock: nobody waits here for one that is being made.
+        kept = list(self._kept.items())
+        self._kept = {side: x for side, x in kept if id(x.surface.mesh) in wanted}
+
+
 class Slider:
     """Brings semilandmarks to rest, keeping what the next time may share.
 
-    For use by one thread at a time.
+    For use by one thread at a time, but for the finders.
 
     Attributes
     ----------
+    finders
+        Of ways over both meshes, for whoever needs some.
     slides
         How often it was really done, for tests and for the curious.
     """
 
     def __init__(self) -> None:
-        self._finders: dict[Side, PathFinder] = {}
+        self.finders = Finders()
         self._last: tuple[SlidingInputs, SlidGroups] | None = None
         self.slides = 0
 
@@ -226,13 +275,16 @@ class Slider:
                     f"Semilandmarks slide from bone to bone, and there is no {side.value} mesh: "
                     "open it first."
                 )
+        assert inputs.mesh is not None, "made sure above"
+        assert inputs.target is not None, "made sure above"
+        there = self.finders.of(Side.DESTINATION, inputs.target)
         found = gathered(
             inputs.groups,
             dict(zip(inputs.names, inputs.source, strict=True)),
-            self.finder(Side.SOURCE, inputs.mesh),
-            lambda: self.finder(Side.DESTINATION, inputs.target),
+            self.finders.of(Side.SOURCE, inputs.mesh),
+            lambda: there,
         )
-        surface = self.finder(Side.DESTINATION, inputs.target).surface
+        surface = there.surface
         slid = slide(inputs.source, inputs.destination, found.semilandmarks, surface)
         self.slides += 1
         points = found.semilandmarks.source
@@ -244,13 +296,9 @@ class Slider:
         self._last = (inputs, at_rest)
         return at_rest
 
-    def finder(self, side: Side, mesh: Mesh | None) -> PathFinder:
-        """Return what finds ways over a mesh; that of the last one is kept."""
-        assert mesh is not None, "asked for where there is a mesh"
-        kept = self._finders.get(side)
-        if kept is None or kept.surface.mesh is not mesh:
-            kept = self._finders[side] = PathFinder(Surface(mesh))
-        return kept
+    def forget(self) -> None:
+        """Let go of what slid last."""
+        self._last = None
 
 
 def kept_at_rest(inputs: SlidingInputs, kept: SlidRecord) -> SlidGroups:
@@ -272,6 +320,7 @@ def kept_at_rest(inputs: SlidingInputs, kept: SlidRecord) -> SlidGroups:
     positions[is_freed] = spline.evaluate(source[is_freed])
     slid = Slid(
         positions=positions,
+        start=positions,
         is_freed=is_freed,
         slid=np.zeros(len(source)),
         energies=(),

@@ -119,7 +119,7 @@ class WarpSolver:
     def solve_landmarks(self, inputs: WarpInputs, *, moving: bool = False) -> WarpResult:
         """Solve, without warping any mesh; while something moves, semilandmarks are held."""
         if not inputs.source:
-            return WarpResult(inputs)
+            return WarpResult(inputs, not_sliding=self._slid(inputs, moving)[1])
         try:
             result = self._solved(inputs, moving)
             assert result.spline is not None, "what is solved has a spline"
@@ -191,6 +191,8 @@ class WarpSolver:
     def _slid(self, inputs: WarpInputs, moving: bool) -> tuple[SlidGroups | None, str | None]:
         """Return the semilandmarks at rest, or why there are none."""
         if inputs.sliding is None:
+            # What slid before may be of bones that nobody works on any more.
+            self.slider.forget()
             return None, None
         if inputs.refinement is not None:
             return None, FITTED

@@ -1,0 +1,65 @@
+"""Which of many places the bone hides, found bit by bit while things move."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pinwarp.gui.scene.projection import Projection
+
+# So many are looked at in one paint: 10 us each, and there are two views.
+IN_ONE_PAINT = 250
+
+
+class HiddenPlaces:
+    """Remembers what is hidden of places that move, or are looked at from elsewhere.
+
+    What was hidden a moment ago mostly still is: of many places only some are looked at anew in
+    each paint, and after a few paints all have been.
+
+    Parameters
+    ----------
+    projection
+        Sees the bone.
+    """
+
+    def __init__(self, projection: Projection) -> None:
+        self._projection = projection
+        self._positions: NDArray | None = None
+        self._key: Hashable = None
+        self._hidden: NDArray[np.bool_] = np.zeros(0, np.bool_)
+        self._next = 0
+        self._stale = 0
+
+    @property
+    def is_stale(self) -> bool:
+        """Whether some were not looked at since things moved."""
+        return self._stale > 0
+
+    def of(self, positions: NDArray, at_most: int | None = IN_ONE_PAINT) -> NDArray[np.bool_]:
+        """Return which of (n, 3) positions the bone hides, as far as is known.
+
+        Parameters
+        ----------
+        positions
+            The same array as long as nothing has moved.
+        at_most
+            So many are looked at anew; None for all.
+        """
+        count, key = len(positions), self._projection.view_key()
+        if count != len(self._hidden):
+            # Others than before: nothing is known of them.
+            self._hidden, self._next = np.zeros(count, np.bool_), 0
+            self._stale, at_most = count, None
+        elif positions is not self._positions or key != self._key:
+            self._stale = count
+        self._positions, self._key = positions, key
+        number = self._stale if at_most is None else min(at_most, self._stale)
+        if number:
+            rows = np.arange(self._next, self._next + number) % count
+            self._hidden[rows] = self._projection.behind_surface(positions[rows])
+            self._next = int(rows[-1] + 1) % count
+            self._stale -= number
+        return self._hidden

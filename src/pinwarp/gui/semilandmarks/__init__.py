@@ -1,0 +1,1 @@
+"""Semilandmarks: curves and patches drawn on the source, seen on both bones, listed."""
