@@ -21,7 +21,7 @@ from pinwarp.session.warp.sliding import (
     destination_path,
     expected_handles,
 )
-from pinwarp.session.warp.solver import WarpResult
+from pinwarp.session.warp.result import WarpResult
 
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]

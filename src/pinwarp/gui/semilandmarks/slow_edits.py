@@ -70,8 +70,8 @@ class SlowEdits:
 
     @property
     def is_idle(self) -> bool:
-        """Whether nothing is under way."""
-        return not self._waiting and self._worker.is_idle
+        """Whether nothing is under way, but for what waits until the hand lets go."""
+        return self._worker.is_idle and (not self._waiting or self._editor.is_previewing)
 
     def ask(self, edit: SlowEdit) -> None:
         """Make an edit behind those that wait already."""
