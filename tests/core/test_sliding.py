@@ -134,6 +134,18 @@ def test_points_of_a_curve_too_short_for_a_direction_slide_on_the_surface(count,
     np.testing.assert_allclose(on_curve.positions, on_surface.positions, atol=1e-9)
 
 
+def test_a_crest_may_face_either_way_where_points_over_the_surface_may_not():
+    u = landmarks(12)
+    ring = ON_SOURCE.closest(shape(np.arange(12) * 2 * np.pi / 12, np.full(12, 1.3)))
+    # A third of them lie on the other flank.
+    normals = np.where(np.arange(12)[:, None] % 3 == 0, ring.normals[:, [1, 2, 0]], ring.normals)
+    crest = SlidingCurve(len(u) + np.arange(12), is_closed=True)
+    slid = slide(u, u, Semilandmarks(ring.positions, normals, (crest,)), ON_SOURCE)
+    assert len(slid.positions) == 12
+    with pytest.raises(MeshError, match="faces as the destination does"):
+        slide(u, u, Semilandmarks(ring.positions, normals), ON_SOURCE)
+
+
 def test_a_curve_may_end_in_landmarks():
     u = landmarks(12)
     ends = [2, 7]

@@ -43,6 +43,8 @@ Mask = NDArray[np.bool_]
 LARGEST_ANGLE = 60.0
 # At least this share of the points must face as the destination does: else the pairs are wrong.
 FACING_ALIKE = 0.8
+# Along a crest a surface faces either way: where there are curves alone, these must.
+FACING_ALONG = 0.5
 # Sliding ends when a turn saves less than this share of the energy, or after so many.
 WORTH_A_TURN = 1e-4
 TURNS = 15
@@ -308,9 +310,11 @@ class _Task:
         nobody = np.zeros(len(self.source), np.bool_)
         positions, normals, on_rim = self._laid(carried, nobody)
         if not self.is_landmark.all():
-            judged = ~self.is_landmark & ~on_rim
+            judged, least = ~self.is_landmark & ~on_rim, FACING_ALONG
+            if (judged & ~self.on_curve).any():
+                judged, least = judged & ~self.on_curve, FACING_ALIKE
             faces = carried_normals(self.first, self.source[judged], self.normals[judged])
-            check_facing(np.sum(faces * normals[judged], axis=1), self.surface.mesh, FACING_ALIKE)
+            check_facing(np.sum(faces * normals[judged], axis=1), self.surface.mesh, least)
         freed = self._astray(self.first, normals, on_rim)
         if len(freed) > self.landmarks and freed[self.landmarks :].all():
             raise MeshError(

@@ -196,7 +196,8 @@ class GroupModel(QAbstractItemModel):
 
 def _tip_of(one: ShownGroup) -> str:
     group = one.group
-    words = f"{group.name}: {kind_of(group)}"
+    kind = kind_of(group)
+    words = f"{group.name}: {'closed curve' if kind == 'closed' else kind}"
     if isinstance(group, Patch):
         return f"{words} inside {group.around}" if group.around else f"{words}, whole surface"
     anchors = ", ".join(handle.landmark for handle in group.anchors)

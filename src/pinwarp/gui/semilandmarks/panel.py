@@ -32,7 +32,7 @@ from pinwarp.gui.style import theme
 
 # What the slider offers; any number can be typed.
 CURVE_COUNTS, PATCH_COUNTS = (2, 100), (50, 1000)
-_WIDEST = {1: "closed curve ", 2: "10,000", 3: "Freed ", 4: "123.4 mm ", 5: "drawn "}
+_WIDEST = {1: "closed ", 2: "Points ", 3: "Freed ", 4: "123.4 mm ", 5: "drawn "}
 _ACROSS = 4
 
 

@@ -12,7 +12,7 @@ REFINED = "The warp is refined to the surface: semilandmarks take no part in it.
 def kind_of(group: Group) -> str:
     """Return what a group is, in one or two words."""
     if isinstance(group, Curve):
-        return "closed curve" if group.is_closed else "curve"
+        return "closed" if group.is_closed else "curve"
     return "patch"
 
 

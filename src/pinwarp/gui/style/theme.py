@@ -38,7 +38,7 @@ ARROW_COLOUR = "#20242b"
 LEFT_OUT_COLOUR = "#D55E00"
 
 # Of curves and patches, one after the other: told apart from one another, from bones and landmarks.
-GROUP_COLOURS = ("#7a3fb0", "#b3402a", "#0e7c86", "#c2377f", "#6b6d12", "#2b4fa8")
+GROUP_COLOURS = ("#7a3fb0", "#b3402a", "#0e7c86", "#c2377f", "#2b4fa8", "#5c6410")
 
 FOLD_COLOUR = "#D55E00"
 
