@@ -80,7 +80,7 @@ def test_a_curve_is_drawn_click_by_click_and_seen_on_both_bones(user):
     user.press(BACK)
     assert len(part(user).curve_tool.stops) == 2
     # The way follows the mouse.
-    QTest.mouseMove(view, user.place_of(SOURCE, anchor))
+    user.move_with(view, user.place_of(SOURCE, anchor).toPointF(), Qt.MouseButton.NoButton)
     user.settle()
     solid, ghost = lines(user, SOURCE)
     assert not solid.is_ghost
@@ -106,6 +106,7 @@ def test_a_curve_is_drawn_click_by_click_and_seen_on_both_bones(user):
     assert [handle.is_ghost for handle in handles(user, DESTINATION)] == [True, True]
     assert len(handles(user, SOURCE)) == 2
     assert part(user).note.text() == "20 semilandmarks"
+    assert "Space accepts the ghost" in user.window.parts.guidance.hint.text()
     # Nothing of it catches the mouse but the handles.
     user.editor.look(group="")
     user.click(DESTINATION, user.place_of(DESTINATION, dots(user, DESTINATION).positions[12]))

@@ -144,7 +144,7 @@ class Guidance(Capability):
         target = self._ghosts.target
         targets = [f"on the {side.value} places {target(side) or 'a new one'}" for side in Side]
         space = self._hand.accept_action.keys
-        ghost = f"  {space} accepts the ghost." if any(map(self._ghosts.at, Side)) else ""
+        ghost = f"  {space} accepts the ghost." if self._hand.offers_ghost else ""
         self.hint.setText(f"A click {targets[0]}, {targets[1]}.{ghost}")
 
     def _hover_words(self, name: str) -> str:

@@ -52,7 +52,7 @@ class Hand(Capability):
         self._editor = editor
         self._viewports = viewports
         self._ghosts = ghosts
-        self._others: list[Callable[[bool], bool]] = []
+        self._others: list[tuple[Callable[[bool], bool], Callable[[], bool]]] = []
         self.snap_action = Action(
             "snap",
             "S&nap to Surface",
@@ -170,7 +170,7 @@ class Hand(Capability):
         )
         self._placed(session, f"Place {name}", name, side)
 
-    def share_accepting(self, accept: Callable[[bool], bool]) -> None:
+    def share_accepting(self, accept: Callable[[bool], bool], offers: Callable[[], bool]) -> None:
         """Let somebody else accept ghosts of its own by the same key.
 
         Parameters
@@ -178,17 +178,24 @@ class Hand(Capability):
         accept
             Called with whether only a ghost that the user chose is meant: this is asked before
             landmarks, all others behind them. Says whether it accepted one.
+        offers
+            Says whether there is one.
         """
-        self._others.append(accept)
+        self._others.append((accept, offers))
+
+    @property
+    def offers_ghost(self) -> bool:
+        """Whether there is a ghost to accept."""
+        return any(map(self._ghosts.at, Side)) or any(offers() for _, offers in self._others)
 
     def accept_ghost(self) -> None:
         """Place the landmark that a ghost predicts, on the side that was worked on last if any."""
-        if any(accept(True) for accept in self._others):
+        if any(accept(True) for accept, _ in self._others):
             return
         side = self._editor.selection.side
         ghost = self._ghosts.at(side.other) or self._ghosts.at(side)
         if ghost is None:
-            if any(accept(False) for accept in self._others):
+            if any(accept(False) for accept, _ in self._others):
                 return
             self.refused.emit(
                 "There is nothing to accept: from the third pair on, a landmark placed on one side "

@@ -119,8 +119,8 @@ class CurveTool(ViewTool):
         """What it asks for now, in few words."""
         if len(self.stops) < 2:
             return "Click the next place" if self.stops else "Click along a crest of the source"
-        closing = "\nor on the first place to close it" if len(self.stops) > 2 else ""
-        return f"Click on, {named(ENDING[0])} ends{closing}"
+        closing = "\nA click on the first place closes it" if len(self.stops) > 2 else ""
+        return f"Click on, {named(ENDING[0])} ends the curve{closing}"
 
     @property
     def hint(self) -> str:

@@ -16,6 +16,7 @@ from pinwarp.gui.semilandmarks.slow_edits import SlowEdit, SlowEdits
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.session import Session
+from pinwarp.session.warp.accepting import accepted
 from pinwarp.session.warp.sliding import Finders
 
 PATCH_POINTS = 300
@@ -46,6 +47,7 @@ class GroupEdits:
         self._editor = editor
         self._shown = shown
         self._say = say
+        self._finders = finders
         self._slow = SlowEdits(editor, finders, say)
 
     @property
@@ -134,12 +136,19 @@ class GroupEdits:
 
     def accept(self, name: str) -> bool:
         """Draw a curve on the destination where it is expected; say whether it was a ghost."""
-        one = self._shown().group(name)
-        if not self.can_accept(name) or one is None or one.expected is None:
+        result = self._shown().asked.result
+        if not self.can_accept(name) or result is None or result.spline is None:
             return False
-        return self._try(
-            lambda session: edits.accept_curve(session, name, one.expected or ()), f"Accept {name}"
-        )
+        spline, finders = result.spline, self._finders
+
+        def drawn(session: Session, finder: PathFinder) -> Session:
+            mesh = session.mesh(Side.DESTINATION)
+            if mesh is None:
+                return session
+            return accepted(session, name, spline, finder, finders.of(Side.DESTINATION, mesh))
+
+        self._slow.ask(SlowEdit(drawn, f"Accept {name}"))
+        return True
 
     def can_undraw(self, name: str) -> bool:
         """Whether a curve is drawn on the destination."""

@@ -121,7 +121,7 @@ class GroupModel(QAbstractItemModel):
         if role == Qt.ItemDataRole.ToolTipRole:
             return _TIPS.get(section)
         if role == Qt.ItemDataRole.TextAlignmentRole:
-            return _RIGHT if section in (POINTS, FREED, SLIDE) else _LEFT
+            return _alignment(section)
         return None
 
     def flags(self, index: QModelIndex) -> Qt.ItemFlag:
@@ -139,7 +139,7 @@ class GroupModel(QAbstractItemModel):
         if one is None:
             return None
         if role == Qt.ItemDataRole.TextAlignmentRole:
-            return _RIGHT if index.column() in (POINTS, FREED, SLIDE) else _LEFT
+            return _alignment(index.column())
         number = self.point(index)
         if number is not None:
             is_there = number < one.group.count and role == Qt.ItemDataRole.DisplayRole
@@ -192,6 +192,13 @@ class GroupModel(QAbstractItemModel):
         if column == FREED and one.is_freed[number]:
             return "freed"
         return ""
+
+
+def _alignment(column: int) -> Qt.AlignmentFlag:
+    if column == STATE:
+        # Else it would stand close to the figure before it.
+        return Qt.AlignmentFlag.AlignCenter
+    return _RIGHT if column in (POINTS, FREED, SLIDE) else _LEFT
 
 
 def _tip_of(one: ShownGroup) -> str:

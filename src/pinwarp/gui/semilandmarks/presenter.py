@@ -107,7 +107,7 @@ class Semilandmarks(Capability):
         self.panels = (Panel("semilandmarks", "Semilandmarks", self.panel),)
         self.note = QLabel()
         self.notes = (self.note,)
-        hand.share_accepting(self._accept)
+        hand.share_accepting(self._accept, self._offers)
         guidance.give_way_to(lambda: self._tool.hint if self._tool is not None else "")
         self._connect()
         self._show()
@@ -288,6 +288,9 @@ class Semilandmarks(Capability):
             return bool(name) and self.edits.accept(name)
         return any(self.edits.accept(one.group.name) for one in self.shown.groups)
 
+    def _offers(self) -> bool:
+        return any(self.edits.can_accept(one.group.name) for one in self.shown.groups)
+
     def _remove(self) -> None:
         if self._chosen():
             self.edits.remove(self._chosen())
@@ -348,8 +351,10 @@ class Semilandmarks(Capability):
     def _on_shown(self, shown: Shown) -> None:
         if shown.groups and not self._asked.groups:
             return
-        self.shown = shown
+        offered, self.shown = self._offers(), shown
         self._show()
+        if self._offers() != offered:
+            self._guidance.show()
 
     def _on_failure(self, error: Exception) -> None:
         self.shown = Shown(self._asked)

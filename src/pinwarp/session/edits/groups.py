@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import itertools
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from pinwarp.core.curves import PathFinder
@@ -15,6 +16,7 @@ from pinwarp.session.session import Session
 __all__ = [
     "accept_curve",
     "add_curve",
+    "add_handles",
     "add_patch",
     "exclude_points",
     "move_handle",
@@ -158,6 +160,25 @@ def move_handle(
         moved = replace(handle, destination=place, landmark=landmark)
     handles = (*curve.handles[:number], moved, *curve.handles[number + 1 :])
     return _changed(session, replace(curve, handles=handles))
+
+
+def add_handles(session: Session, name: str, more: Mapping[int, Sequence[Handle]]) -> Session:
+    """Let a curve go through more places.
+
+    Parameters
+    ----------
+    session
+        What is edited.
+    name
+        The curve.
+    more
+        By the number of a handle what comes behind it, in order.
+    """
+    curve = _curve(session, name)
+    handles = itertools.chain.from_iterable(
+        (handle, *more.get(number, ())) for number, handle in enumerate(curve.handles)
+    )
+    return _changed(session, replace(curve, handles=tuple(handles)))
 
 
 def accept_curve(session: Session, name: str, places: Sequence[Position]) -> Session:
