@@ -51,27 +51,8 @@ _FITTED_TITLES = {
 }
 _FITTED_MEANINGS = {
     MapKind.DISTANCE: "The warp was fitted to this surface: a small distance proves nothing.",
-    MapKind.UNCERTAINTY: "The refinement does not count here: the landmarks' own warp is judged.",
+    MapKind.UNCERTAINTY: "What was fitted does not count here: the landmarks' own warp is judged.",
 }
-
-
-def title_of(kind: MapKind, *, fitted: bool) -> str:
-    """Return what a map is called.
-
-    Parameters
-    ----------
-    kind
-        Which.
-    fitted
-        Whether the warp was refined to the surface.
-    """
-    return _FITTED_TITLES.get(kind, TITLES[kind]) if fitted else TITLES[kind]
-
-
-def meaning_of(kind: MapKind | None, *, fitted: bool) -> str:
-    """Return what a map means, in sentences; parameters as of :func:`title_of`."""
-    more = _FITTED_MEANINGS.get(kind, "") if fitted and kind is not None else ""
-    return f"{MEANINGS[kind]} {more}".rstrip()
 
 
 def title_of(kind: MapKind, *, fitted: bool) -> str:
@@ -84,7 +65,13 @@ def title_of(kind: MapKind, *, fitted: bool) -> str:
     fitted
         Whether the warp was fitted to the surface that distances are measured to.
     """
-    return f"{TITLES[kind]} (fitted)" if fitted and kind is MapKind.DISTANCE else TITLES[kind]
+    return _FITTED_TITLES.get(kind, TITLES[kind]) if fitted else TITLES[kind]
+
+
+def meaning_of(kind: MapKind | None, *, fitted: bool) -> str:
+    """Return what a map means, in sentences; parameters as of :func:`title_of`."""
+    more = _FITTED_MEANINGS.get(kind, "") if fitted and kind is not None else ""
+    return f"{MEANINGS[kind]} {more}".rstrip()
 
 
 def note_of(found: SurfaceMap, unit: str) -> str:

@@ -9,7 +9,13 @@ from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.window.fault_note import FaultNote
 from pinwarp.gui.window.faults import Faults
-from pinwarp.gui.window.help_text import ABOUT, ABOUT_PENALTY, ABOUT_QUALITY, ABOUT_REFINING
+from pinwarp.gui.window.help_text import (
+    ABOUT,
+    ABOUT_PENALTY,
+    ABOUT_QUALITY,
+    ABOUT_REFINING,
+    ABOUT_SEMILANDMARKS,
+)
 
 
 class Help(Capability):
@@ -61,10 +67,16 @@ class Help(Capability):
                 at="Help.22",
             ),
             Action(
+                "about_semilandmarks",
+                "About Semi&landmarks",
+                lambda: dialogs.tell("About semilandmarks", ABOUT_SEMILANDMARKS),
+                at="Help.23",
+            ),
+            Action(
                 "about_refining",
                 "About &Refining",
                 lambda: dialogs.tell("About refining to the surface", ABOUT_REFINING),
-                at="Help.23",
+                at="Help.24",
             ),
             Action(
                 "copy_details",
