@@ -132,7 +132,7 @@ class Parts:
             editor, tasks, recent, self.saving, meshes, self.imports, self.recovery.window_with
         )
         self.exports = Exports(editor, tasks)
-        self.semilandmarks = SemilandmarkExport(editor, tasks)
+        self.semilandmark_export = SemilandmarkExport(editor, tasks)
         self.pictures = PictureExport(editor, tasks, views, frame)
         self.report = ReportExport(
             editor,
