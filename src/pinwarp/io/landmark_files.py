@@ -22,6 +22,7 @@ from pinwarp.io.landmark_formats import (
     tps,
 )
 from pinwarp.io.landmark_formats.reading import MOST, LandmarkReading, SkippedLine
+from pinwarp.io.landmark_formats.sliders import with_sliders
 from pinwarp.io.landmark_formats.writing import Written
 
 __all__ = [
@@ -101,7 +102,9 @@ def read_landmarks(path: str | Path, side: Side) -> LandmarkReading:
     Returns
     -------
     LandmarkReading
-        With positions as they are stored: nothing is turned, and nothing converted.
+        With positions as they are stored: nothing is turned, and nothing converted. Points of
+        curves and patches are among the landmarks. Beside a TPS file geomorph's tables of
+        sliders are looked for.
 
     Raises
     ------
@@ -132,7 +135,9 @@ def read_landmarks(path: str | Path, side: Side) -> LandmarkReading:
         raise FileFormatError(
             path, "This is a session with its own meshes: open it instead of importing it."
         )
-    return _format_in(path, text).read(path, text, side)
+    known = _format_in(path, text)
+    reading = known.read(path, text, side)
+    return with_sliders(Path(path), reading) if known is tps else reading
 
 
 def recognised(text: str) -> LandmarkFormat | None:

@@ -195,17 +195,22 @@ def test_morphologika_gets_the_line_ends_it_wants(tmp_path: Path) -> None:
 # TPS
 
 
-def test_the_scale_multiplies_and_curves_and_further_specimens_are_left_out() -> None:
+def test_the_scale_multiplies_and_further_specimens_are_left_out() -> None:
     reading = read(
         "lm3=2\n1 2 3\n4 5 6\nCURVES=1\nPOINTS=2\n7 8 9\n7 8 9\nIMAGE=a.jpg\nID=femur\n"
         "SCALE=0.5\n\nLM3=2\n9 9 9\n9 9 9\nSCALE=7\n"
     )
-    assert sources(reading) == {"landmark_0": (0.5, 1, 1.5), "landmark_1": (2, 2.5, 3)}
+    assert sources(reading) == {
+        "landmark_0": (0.5, 1, 1.5),
+        "landmark_1": (2, 2.5, 3),
+        "curve_0_0": (3.5, 4, 4.5),
+        "curve_0_1": (3.5, 4, 4.5),
+    }
+    assert [x.name for x in reading.single] == ["landmark_0", "landmark_1"]
     assert reading.skipped == ()
     assert reading.notes == (
         "2 specimens: the first was read.",
         "The coordinates were multiplied by the scale 0.5.",
-        "Curves and outlines were left out.",
     )
 
 

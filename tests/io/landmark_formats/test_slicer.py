@@ -147,10 +147,8 @@ def test_of_several_lists_the_first_is_read_and_a_curve_is_called_one() -> None:
     reading = read(json.dumps(root))
     assert reading.names == ("a",)
     assert reading.frame == "RAS"
-    assert reading.notes == (
-        "2 lists: the first was read.",
-        "It is a Curve: its control points were read.",
-    )
+    assert reading.notes == ("2 lists: the first was read.",)
+    assert [group.points for group in reading.groups] == [("a",)]
 
 
 @pytest.mark.parametrize(

@@ -46,6 +46,8 @@ class ArrivalModel(QAbstractTableModel):
 
     def show_arrivals(self, arrivals: Sequence[Arrival]) -> None:
         """Show what becomes of them; there are as many rows as before, but for the first time."""
+        if not arrivals:
+            return
         if len(arrivals) == len(self._arrivals):
             self._arrivals = arrivals
             last = self.index(len(arrivals) - 1, self.columnCount() - 1)

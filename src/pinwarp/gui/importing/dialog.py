@@ -21,6 +21,7 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.landmarks import Side
+from pinwarp.core.words import counted, listed
 from pinwarp.gui.importing.arrival_model import ArrivalModel
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.lengths import distance_from_mesh, format_length
@@ -34,6 +35,7 @@ from pinwarp.session.importing.landmarks import (
     awaiting,
     can_pair,
     default_pairing,
+    group_words,
     left_waiting,
     summary,
 )
@@ -131,13 +133,17 @@ class ImportDialog(QDialog):
         column.addLayout(head)
         for side in self._arriving.doubtful:
             column.addWidget(self._question(side))
-        ways = QVBoxLayout()
-        ways.setSpacing(4)
-        ways.addWidget(_label("Bring them in", bold=True))
-        for button in self.pairings.values():
-            ways.addWidget(button)
-        column.addLayout(ways)
-        column.addWidget(self.table, 1)
+        if self._arriving.landmarks:
+            ways = QVBoxLayout()
+            ways.setSpacing(4)
+            ways.addWidget(_label("Bring them in", bold=True))
+            for button in self.pairings.values():
+                ways.addWidget(button)
+            column.addLayout(ways)
+            column.addWidget(self.table, 1)
+        else:
+            # A file of nothing but curves: the lines below say all.
+            column.addStretch(1)
         self.outcome.setWordWrap(True)
         self.outcome.setTextFormat(Qt.TextFormat.PlainText)
         column.addWidget(self.outcome)
@@ -227,7 +233,9 @@ class ImportDialog(QDialog):
         self.choice = ImportChoice(pairing, self._chosen_fits())
         found = arrivals(self._session, self._arriving, self.choice)
         self.model.show_arrivals(found)
-        self.outcome.setText(summary(found, left_waiting(self._session, self._arriving, found)))
+        waiting = left_waiting(self._session, self._arriving, found)
+        groups = group_words(self._session, self._arriving, self.choice)
+        self.outcome.setText(" ".join(filter(None, (summary(found, waiting), *groups))))
 
     def _chosen_fits(self) -> dict[Side, Fit]:
         return {
@@ -240,8 +248,11 @@ class ImportDialog(QDialog):
 
 def _headline(arriving: Arriving) -> str:
     reading = arriving.reading
-    what = "pair" if reading.is_pairs else "landmark"
-    return f"{reading.count:,} {what}{'' if reading.count == 1 else 's'} in {arriving.path.name}"
+    parts = [counted(len(arriving.landmarks), "pair" if reading.is_pairs else "landmark")]
+    for is_curve, one, many in ((True, "curve", "curves"), (False, "patch", "patches")):
+        if number := sum(group.is_curve is is_curve for group in reading.groups):
+            parts.append(counted(number, one, many))
+    return f"{listed(parts if arriving.landmarks else parts[1:])} in {arriving.path.name}"
 
 
 def _understood(reading: LandmarkReading) -> str:
@@ -253,7 +264,7 @@ def _understood(reading: LandmarkReading) -> str:
 
 def _pairing_words(session: Session, arriving: Arriving, pairing: Pairing) -> str:
     """Say a way of pairing, and what speaks for it."""
-    names, side = arriving.reading.names, arriving.side
+    names, side = [x.name for x in arriving.landmarks], arriving.side
     match pairing:
         case Pairing.BY_NAME:
             known = {landmark.name for landmark in session.landmarks}

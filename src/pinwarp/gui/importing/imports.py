@@ -8,6 +8,7 @@ from pathlib import Path
 from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.surface_distance import SurfaceIndex
+from pinwarp.core.words import counted
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.importing.import_dialogs import ImportDialogs
@@ -21,6 +22,7 @@ from pinwarp.session.importing.landmarks import (
     ImportChoice,
     Pairing,
     default_pairing,
+    group_words,
     imported,
     is_plain,
 )
@@ -111,6 +113,7 @@ class LandmarkImports(Capability):
         def compare(progress: Progress) -> Mapping[Side, tuple[Fit, ...]]:
             progress(0.5, "comparing with the mesh")
             return {
+                # Points of curves tell as much as landmarks do.
                 side: fits_of(reading.landmarks, side, SurfaceIndex(mesh))
                 for side, mesh in meshes.items()
                 if mesh is not None
@@ -146,9 +149,10 @@ class LandmarkImports(Capability):
             self._tasks.said.emit("Cancelled; nothing was changed")
             return
         # Meshes may have arrived while the question was open.
-        session = imported(self._editor.committed, arriving, choice)
-        self._editor.commit(session, arriving.label)
-        self._tasks.said.emit(_report(arriving, choice))
+        before = self._editor.committed
+        self._editor.commit(imported(before, arriving, choice), arriving.label)
+        words = (_report(arriving, choice), *group_words(before, arriving, choice))
+        self._tasks.said.emit(" ".join(words))
         if not asking:
             self._tell_after(arriving)
 
@@ -159,7 +163,7 @@ class LandmarkImports(Capability):
             number = len(reading.skipped)
             self._tasks.dialogs.tell(
                 "Some lines were skipped",
-                f"{_count(reading)} read from {arriving.path.name}; "
+                f"{_count(arriving)} read from {arriving.path.name}; "
                 f"{number:,} line{' was' if number == 1 else 's were'} skipped.",
                 "\n".join(
                     f"Line {line.line}: {line.reason}\n    {line.text}" for line in reading.skipped
@@ -215,7 +219,7 @@ def _report(arriving: Arriving, choice: ImportChoice) -> str:
     """Say in one line what was brought in, and how."""
     reading = arriving.reading
     how = "" if choice.pairing is Pairing.BY_NAME else f", {choice.pairing.value}"
-    parts = [f"{_count(reading)} from {arriving.path.name} ({reading.format}){how}"]
+    parts = [f"{_count(arriving)} from {arriving.path.name} ({reading.format}){how}"]
     parts += [
         f"{side.value.capitalize()}: {fit.describe(reading.frame)}"
         for side, fit in choice.fits.items()
@@ -224,6 +228,10 @@ def _report(arriving: Arriving, choice: ImportChoice) -> str:
     return ". ".join((*parts, *reading.notes))
 
 
-def _count(reading: LandmarkReading) -> str:
-    what = "pair" if reading.is_pairs else "landmark"
-    return f"{reading.count:,} {what}{'' if reading.count == 1 else 's'}"
+def _count(arriving: Arriving) -> str:
+    words = counted(len(arriving.landmarks), "pair" if arriving.reading.is_pairs else "landmark")
+    groups = arriving.reading.groups
+    if not groups:
+        return words
+    also = counted(len(groups), "curve or patch", "curves and patches")
+    return f"{words} and {also}" if arriving.landmarks else also

@@ -9,7 +9,7 @@ from pathlib import Path
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.io.csv_cells import is_number
 from pinwarp.io.landmark_formats.lines import filled_lines, landmark_on, one_line, three_numbers
-from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
+from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading, ReadGroup
 from pinwarp.io.landmark_formats.writing import Written, numbers_text
 
 NAME = "IDAV Landmark .pts"
@@ -18,6 +18,7 @@ HOLDS_PAIRS = False
 
 _VERSION = re.compile(r"version\s+\d", re.IGNORECASE)
 _MISSING = "9999"
+_GROUPED = re.compile(r"([CP]\d{3,})-\d+", re.IGNORECASE)
 
 
 def matches(head: str) -> bool:
@@ -46,8 +47,8 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     Returns
     -------
     LandmarkReading
-        Named as in the file (``S000`` is a single landmark, ``C000-000`` one of a curve). The
-        format says neither a unit nor a frame.
+        Named as in the file (``S000`` is a single landmark, ``C000-000`` a point of a curve,
+        ``P000-000`` one of a patch). The format says neither a unit nor a frame.
 
     Raises
     ------
@@ -61,6 +62,7 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     ('S000', (1.0, 2.0, 3.0))
     """
     gathering = Gathering(path)
+    grouped: dict[str, list[str]] = {}
     announced, rows = None, 0
     for number, line in filled_lines(text):
         words = line.split()
@@ -71,11 +73,16 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
                 announced = int(line)
                 continue
         gathering.take(number, line, _landmark, words, side, f"landmark_{rows}")
+        if point := _GROUPED.fullmatch(words[0]):
+            grouped.setdefault(point[1].upper(), []).append(words[0])
         rows += 1
     notes = []
     if announced is not None and announced != rows:
         notes.append(f"The file announces {announced} landmarks and holds {rows}: was it cut off?")
-    return gathering.reading(NAME, "lines as in: S000 -11.37 57.22 -15.77", notes=notes)
+    groups = [ReadGroup(x, tuple(points), x.startswith("C")) for x, points in grouped.items()]
+    return gathering.reading(
+        NAME, "lines as in: S000 -11.37 57.22 -15.77", notes=notes, groups=groups
+    )
 
 
 def _landmark(words: Sequence[str], side: Side, default: str) -> Landmark:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import ParamSpec
 
@@ -40,6 +40,34 @@ class SkippedLine:
 
 
 @dataclass(frozen=True)
+class ReadGroup:
+    """Landmarks of a file that are points of a curve, or of a patch.
+
+    Parameters
+    ----------
+    name
+        What the file calls it, or a name made of its number.
+    points
+        Names of its landmarks, in order.
+    is_curve
+        Whether they lie along a curve, or on a surface.
+    is_closed
+        Whether the curve goes on from the last to the first.
+    are_handles
+        Whether they are what the curve was drawn through, rather than points along it.
+    anchors
+        Those of them that are landmarks of their own.
+    """
+
+    name: str
+    points: tuple[str, ...]
+    is_curve: bool = True
+    is_closed: bool = False
+    are_handles: bool = False
+    anchors: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
 class LandmarkReading:
     """What was found in a landmark file: all that a preview of an import shows.
 
@@ -61,6 +89,8 @@ class LandmarkReading:
         The unit of length the file or its format says; empty where it says nothing.
     notes
         What else the user should know, as sentences.
+    groups
+        The curves and patches that some of the landmarks are points of.
     """
 
     landmarks: tuple[Landmark, ...]
@@ -70,6 +100,13 @@ class LandmarkReading:
     frame: str = ""
     unit: str = ""
     notes: tuple[str, ...] = ()
+    groups: tuple[ReadGroup, ...] = ()
+
+    @property
+    def single(self) -> tuple[Landmark, ...]:
+        """The landmarks that are no points of a curve or patch."""
+        grouped = {x for group in self.groups for x in group.points if x not in group.anchors}
+        return tuple(x for x in self.landmarks if x.name not in grouped)
 
     @property
     def count(self) -> int:
@@ -147,6 +184,7 @@ class Gathering:
         frame: str = "",
         unit: str = "",
         notes: Sequence[str] = (),
+        groups: Sequence[ReadGroup] = (),
     ) -> LandmarkReading:
         """Sum up.
 
@@ -156,7 +194,7 @@ class Gathering:
             What the format is called.
         expected
             What a line should look like, for the message when no landmark was found.
-        is_pairs, frame, unit, notes
+        is_pairs, frame, unit, notes, groups
             As in :class:`LandmarkReading`.
 
         Raises
@@ -177,4 +215,8 @@ class Gathering:
             tail = "a name" if unplaced == 1 else "position: they are names"
             notes = (*notes, f"{unplaced} {what} {tail} still to be placed.")
         notes = (*notes, *look_alike_notes(self._found))
-        return LandmarkReading(landmarks, is_pairs, skipped, name, frame, unit, tuple(notes))
+        # Points that were skipped are those of no group.
+        read = [replace(x, points=tuple(p for p in x.points if p in self._found)) for x in groups]
+        return LandmarkReading(
+            landmarks, is_pairs, skipped, name, frame, unit, tuple(notes), tuple(read)
+        )

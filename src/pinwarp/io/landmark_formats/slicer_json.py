@@ -6,6 +6,7 @@ import json
 import math
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -13,8 +14,8 @@ from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Position, Side
 from pinwarp.io.csv_cells import shortened
 from pinwarp.io.json_text import read_json
-from pinwarp.io.landmark_formats.lines import landmark_on
-from pinwarp.io.landmark_formats.reading import MOST, Gathering, LandmarkReading
+from pinwarp.io.landmark_formats.lines import checked_name, landmark_on
+from pinwarp.io.landmark_formats.reading import MOST, Gathering, LandmarkReading, ReadGroup
 from pinwarp.io.landmark_formats.writing import Written, in_millimetres
 
 T = TypeVar("T")
@@ -31,6 +32,7 @@ _ORIENTATION = [-1.0, -0.0, -0.0, -0.0, -1.0, -0.0, 0.0, 0.0, 1.0]
 _POINTS = re.compile(r'"controlPoints"\s*:\s*\[')
 _BETWEEN = re.compile(r"[\s,]*")
 _MOST_NAMED = 3
+_CURVES = ("Curve", "ClosedCurve")
 _AGAIN = "Save it again in 3D Slicer."
 
 
@@ -46,7 +48,7 @@ def matches(head: str) -> bool:
 
 
 def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
-    """Read the first list of control points, positions as they are stored.
+    """Read the first list of control points, or curve, positions as they are stored.
 
     Parameters
     ----------
@@ -86,7 +88,8 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     if markups and len(markups) > 1:
         notes.append(f"{len(markups)} lists: the first was read.")
     kind = markup.get("type", "Fiducial")
-    if kind != "Fiducial":
+    is_curve = kind in _CURVES
+    if kind != "Fiducial" and not is_curve:
         notes.append(f"It is a {_word(kind)}: its control points were read.")
     frame = _word(markup.get("coordinateSystem") or "LPS")
     frame = {"0": "RAS", "1": "LPS"}.get(frame, frame.upper())
@@ -95,14 +98,23 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
         frame = ""
     gathering = Gathering(path)
     places = _places(text, len(points))
+    names: dict[str, None] = {}
     for number, (point, (line, words)) in enumerate(zip(points, places, strict=True)):
-        gathering.take(line, words, _landmark, point, side, f"landmark_{number}")
+        if not is_curve:
+            gathering.take(line, words, _landmark, point, side, f"landmark_{number}")
+            continue
+        gathering.take(line, words, _curve_point, point, side, f"landmark_{number}", names)
+    name = markup.get("name")
+    name = name if isinstance(name, str) else Path(path).name.partition(".")[0]
+    closed = kind == "ClosedCurve"
+    group = ReadGroup(checked_name(name), tuple(names), is_closed=closed, are_handles=True)
     return gathering.reading(
         NAME,
         'controlPoints as in: {"label": "nasion", "position": [12.5, -40.2, 60.1]}',
         frame=frame,
         unit=_unit(markup.get("coordinateUnits")),
         notes=notes,
+        groups=[group] if is_curve else [],
     )
 
 
@@ -188,6 +200,16 @@ def _landmark(point: object, side: Side, default: str) -> Landmark:
     if point.get("positionStatus", "defined") == "defined":
         position = _position(point.get("position"))
     return landmark_on(side, name or default, position)
+
+
+def _curve_point(point: object, side: Side, default: str, names: dict[str, None]) -> Landmark:
+    """Return a point of a curve: all may have one label."""
+    landmark = _landmark(point, side, default)
+    name, number = landmark.name, 2
+    while name in names:
+        name, number = f"{landmark.name}_{number}", number + 1
+    names[name] = None
+    return replace(landmark, name=name)
 
 
 def _position(value: object) -> Position | None:

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Position, Side
-from pinwarp.io.csv_cells import number_of
+from pinwarp.io.csv_cells import number_of, shortened
 from pinwarp.io.landmark_formats.lines import filled_lines, landmark_on, one_line, three_numbers
-from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
+from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading, ReadGroup
 from pinwarp.io.landmark_formats.writing import Written, numbers_text
 
 NAME = "TPS"
@@ -30,7 +30,8 @@ class _Specimen:
     announced: int = 0
     rows: list[tuple[int, str]] = field(default_factory=list)
     scale: tuple[int, str] | None = None
-    curves: bool = False
+    curves: list[tuple[int, list[tuple[int, str]]]] = field(default_factory=list)
+    outlines: bool = False
     others: int = 0
 
 
@@ -60,8 +61,9 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     Returns
     -------
     LandmarkReading
-        Called ``landmark_0``, ``landmark_1`` and so on by their row: the format has no names
-        for them, and neither a unit nor a frame.
+        Called ``landmark_0``, ``landmark_1`` and so on by their row, points of curves
+        ``curve_0_0`` and so on: the format has no names for them, and neither a unit nor a
+        frame. A curve that ends where it begins is closed.
 
     Raises
     ------
@@ -89,22 +91,36 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
                 path, f"The scale cannot be read: {error}. Correct it in a text editor.", place
             ) from None
         notes.append(f"The coordinates were multiplied by the scale {scale:g}.")
-    if specimen.curves:
-        notes.append("Curves and outlines were left out.")
+    if specimen.outlines:
+        notes.append("Outlines were left out.")
     gathering = Gathering(path)
     for row, (number, line) in enumerate(specimen.rows):
         gathering.take(number, line, _landmark, line, scale, side, f"landmark_{row}")
+    groups = []
+    for curve, (announced, points) in enumerate(specimen.curves):
+        is_closed = len(points) > 3 and points[0][1].split() == points[-1][1].split()
+        names = [f"curve_{curve}_{row}" for row in range(len(points) - is_closed)]
+        for name, (number, line) in zip(names, points, strict=False):
+            gathering.take(number, line, _landmark, line, scale, side, name)
+        groups.append(ReadGroup(f"curve_{curve}", tuple(names), is_closed=is_closed))
+        if len(points) < announced:
+            notes.append(
+                f"The file announces {announced} points of curve_{curve} and holds {len(points)}: "
+                "was it cut off?"
+            )
     if len(specimen.rows) < specimen.announced:
         notes.append(
             f"The file announces {specimen.announced} landmarks and holds {len(specimen.rows)}: "
             "was it cut off?"
         )
-    return gathering.reading(NAME, "three numbers on each line below LM3=", notes=notes)
+    return gathering.reading(
+        NAME, "three numbers on each line below LM3=", notes=notes, groups=groups
+    )
 
 
 def _first_specimen(path: str | Path, text: str) -> _Specimen:
     specimen = _Specimen()
-    started = in_landmarks = False
+    started = in_landmarks = in_curve = False
     for number, line in filled_lines(text):
         start, key = _START.match(line), _KEY.match(line)
         if start and started:
@@ -121,15 +137,30 @@ def _first_specimen(path: str | Path, text: str) -> _Specimen:
             continue
         elif key:
             name = key[1].upper()
-            specimen.curves |= name in ("CURVES", "OUTLINES")
+            specimen.outlines |= name == "OUTLINES"
+            in_curve = name in ("POINTS", "POINTS3") and not specimen.outlines
+            if in_curve:
+                specimen.curves.append((_count(path, number, key[2]), []))
             if name == "SCALE":
                 specimen.scale = (number, key[2])
         elif in_landmarks and len(specimen.rows) < specimen.announced:
             specimen.rows.append((number, line))
             continue
+        elif in_curve and len(specimen.curves[-1][1]) < specimen.curves[-1][0]:
+            specimen.curves[-1][1].append((number, line))
+            continue
         # Rows belong to the key above them: to landmarks or to curves.
         in_landmarks = bool(start) and not specimen.others
+        in_curve = in_curve and bool(key)
     return specimen
+
+
+def _count(path: str | Path, number: int, words: str) -> int:
+    if not re.fullmatch("[0-9]{1,9}", words.strip()):
+        raise FileFormatError(
+            path, f"{shortened(words)} is no number of points. Correct it in a text editor.", number
+        )
+    return int(words)
 
 
 def _landmark(line: str, scale: float, side: Side, name: str) -> Landmark:

@@ -106,8 +106,18 @@ def convert_landmarks(
     )
     skipped = tuple(f"Line {x.line} was skipped: {x.reason}." for x in reading.skipped)
     return Conversion(
-        len(reading.landmarks), reading.format, target.NAME, (*skipped, *reading.notes, *notes)
+        len(reading.landmarks),
+        reading.format,
+        target.NAME,
+        (*skipped, *reading.notes, *_group_notes(reading), *notes),
     )
+
+
+def _group_notes(reading: LandmarkReading) -> tuple[str, ...]:
+    names = [group.name for group in reading.groups]
+    if not names:
+        return ()
+    return (f"{some_of(names)}: points of curves and patches were taken for landmarks.",)
 
 
 def _session_reading(path: Path) -> LandmarkReading:
@@ -180,7 +190,7 @@ def frame_notes(reading: LandmarkReading, unit: str) -> tuple[str, ...]:
     >>> frame_notes(LandmarkReading((), False, (), frame="RAS", unit="mm"), "mm")
     ('The positions are in RAS and were taken as they are.',)
     """
-    notes = []
+    notes = [*_group_notes(reading)]
     if reading.frame == "RAS":
         notes.append("The positions are in RAS and were taken as they are.")
     if reading.unit and reading.unit != unit:

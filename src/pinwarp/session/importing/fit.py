@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.core.landmarks import Landmark, Side, flipped, positions, scaled
+from pinwarp.core.groups import moved_group
+from pinwarp.core.landmarks import Landmark, Position, Side, flipped, positions, scaled
 from pinwarp.core.positions import LARGEST_COORDINATE
 from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.session.session import Session
@@ -64,6 +65,11 @@ class Fit:
         if self.flips:
             result = flipped(result, side)
         return result if self.factor == 1 else scaled(result, self.factor, side)
+
+    def moved(self, places: Sequence[Position]) -> NDArray[np.float64]:
+        """Return places read this way."""
+        turned = np.array(places, np.float64).reshape(-1, 3) * ([-1, -1, 1] if self.flips else 1)
+        return np.asarray(self.factor * turned)
 
     @property
     def action(self) -> str:
@@ -160,14 +166,18 @@ def fits_of(landmarks: Iterable[Landmark], side: Side, index: SurfaceIndex) -> t
 
 
 def fitted(session: Session, side: Side, fit: Fit) -> Session:
-    """Return the session with all landmarks of one side read in another way.
+    """Return the session with all landmarks, curves and patches of one side read in another way.
 
     Raises
     ------
     LandmarkError
         When a coordinate becomes too large for a number.
     """
-    return replace(session, landmarks=fit.applied(session.landmarks, side))
+    return replace(
+        session,
+        landmarks=fit.applied(session.landmarks, side),
+        groups=tuple(moved_group(group, side, fit.moved) for group in session.groups),
+    )
 
 
 def _median(index: SurfaceIndex, places: NDArray[np.float64]) -> float:

@@ -12,7 +12,8 @@ from pinwarp.core.names import look_alikes, visible
 from pinwarp.core.words import NAMED
 from pinwarp.io.landmark_files import LandmarkReading
 from pinwarp.session import edits
-from pinwarp.session.importing.fit import Fit
+from pinwarp.session.importing.fit import AS_STORED, Fit
+from pinwarp.session.importing.groups import with_groups
 from pinwarp.session.naming import free_names, is_automatic
 from pinwarp.session.session import Session
 
@@ -87,6 +88,11 @@ class Arriving:
     fits: Mapping[Side, tuple[Fit, ...]] = field(default_factory=dict)
 
     @property
+    def landmarks(self) -> tuple[Landmark, ...]:
+        """Its landmarks, without the points of curves and patches."""
+        return self.reading.single
+
+    @property
     def sides(self) -> tuple[Side, ...]:
         """The sides that it fills."""
         return tuple(Side) if self.side is None else (self.side,)
@@ -146,9 +152,9 @@ def default_pairing(session: Session, arriving: Arriving) -> Pairing:
     >>> default_pairing(session, Arriving(Path("a.pts"), reading, Side.DESTINATION)).value
     'by order'
     """
-    names = arriving.reading.names
+    names = [landmark.name for landmark in arriving.landmarks]
     waiting = () if arriving.side is None else awaiting(session, arriving.side)
-    if not waiting or set(names) & set(waiting):
+    if not waiting or not names or set(names) & set(waiting):
         return Pairing.BY_NAME
     are_numbers = all(is_automatic(name) for name in names)
     if len(names) == len(waiting) or are_numbers:
@@ -216,13 +222,35 @@ def imported(session: Session, arriving: Arriving, choice: ImportChoice) -> Sess
     >>> imported(session, file, ImportChoice(Pairing.BY_ORDER)).landmark("head").destination
     (4.0, 5.0, 6.0)
     """
+    renamed = _renamed(session, arriving, choice)
+    if arriving.side is None:
+        return edits.import_pairs(session, renamed)
+    session = edits.import_side(session, arriving.side, renamed)
+    fit = choice.fits.get(arriving.side, AS_STORED)
+    return with_groups(session, arriving.reading, arriving.side, fit)[0]
+
+
+def group_words(session: Session, arriving: Arriving, choice: ImportChoice) -> tuple[str, ...]:
+    """Say what becomes of each curve and patch of a file, as sentences.
+
+    Parameters
+    ----------
+    session, arriving, choice
+        As in :func:`imported`.
+    """
+    if arriving.side is None or not arriving.reading.groups:
+        return ()
+    landmarks = edits.import_side(session, arriving.side, _renamed(session, arriving, choice))
+    fit = choice.fits.get(arriving.side, AS_STORED)
+    return with_groups(landmarks, arriving.reading, arriving.side, fit)[1]
+
+
+def _renamed(session: Session, arriving: Arriving, choice: ImportChoice) -> list[Landmark]:
+    """Return what arrives by the names that it gets."""
     landmarks = _read(arriving, choice)
     names = [landmark.name for landmark in landmarks]
     targets = _targets(session, arriving.side, names, choice.pairing)
-    renamed = [replace(x, name=name) for x, name in zip(landmarks, targets, strict=True)]
-    if arriving.side is None:
-        return edits.import_pairs(session, renamed)
-    return edits.import_side(session, arriving.side, renamed)
+    return [replace(x, name=name) for x, name in zip(landmarks, targets, strict=True)]
 
 
 def is_plain(session: Session, arriving: Arriving) -> bool:
@@ -232,7 +260,8 @@ def is_plain(session: Session, arriving: Arriving) -> bool:
     whose landmarks all match ones that wait for a position, or are all new where none waits.
     """
     reading = arriving.reading
-    if reading.skipped or reading.notes or arriving.doubtful:
+    # What becomes of curves is worth a look.
+    if reading.skipped or reading.notes or reading.groups or arriving.doubtful:
         return False
     if default_pairing(session, arriving) is not Pairing.BY_NAME:
         return False
@@ -288,7 +317,8 @@ def summary(found: Iterable[Arrival], waiting: Sequence[str] = ()) -> str:
         if who:
             few = _named(who) if len(names) > 1 else ""
             parts.append(f"{len(who):,} {fate.value if len(who) == 1 else fate.of_several}{few}")
-    words = f"{', '.join(parts)}."
+    # A file may hold nothing but curves.
+    words = f"{', '.join(parts)}." if parts else ""
     if waiting:
         wait = "still waits" if len(waiting) == 1 else "still wait"
         words += f" {len(waiting):,} of the session {wait}{_named(waiting)}."
@@ -300,7 +330,7 @@ def _named(names: Sequence[str]) -> str:
 
 
 def _read(arriving: Arriving, choice: ImportChoice) -> tuple[Landmark, ...]:
-    landmarks = arriving.reading.landmarks
+    landmarks = arriving.landmarks
     for side, fit in choice.fits.items():
         landmarks = fit.applied(landmarks, side)
     return landmarks
