@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from pinwarp.gui.scene.projection import Projection
 
-# So many are looked at in one paint: 10 us each, and there are two views.
-IN_ONE_PAINT = 250
+# So many are looked at in one paint while the camera moves, and while they move themselves, which
+# takes them behind the bone more seldom: 10 us each, and there are two views.
+IN_ONE_PAINT, WHILE_THEY_MOVE = 250, 50
 
 
 class HiddenPlaces:
@@ -30,33 +31,35 @@ class HiddenPlaces:
         self._positions: NDArray | None = None
         self._key: Hashable = None
         self._hidden: NDArray[np.bool_] = np.zeros(0, np.bool_)
-        self._next = 0
-        self._stale = 0
+        self._next = self._stale = 0
+        self._in_one_paint = IN_ONE_PAINT
 
     @property
     def is_stale(self) -> bool:
         """Whether some were not looked at since things moved."""
         return self._stale > 0
 
-    def of(self, positions: NDArray, at_most: int | None = IN_ONE_PAINT) -> NDArray[np.bool_]:
+    def of(self, positions: NDArray, *, exactly: bool = False) -> NDArray[np.bool_]:
         """Return which of (n, 3) positions the bone hides, as far as is known.
 
         Parameters
         ----------
         positions
             The same array as long as nothing has moved.
-        at_most
-            So many are looked at anew; None for all.
+        exactly
+            Whether all are looked at that have to be.
         """
         count, key = len(positions), self._projection.view_key()
         if count != len(self._hidden):
             # Others than before: nothing is known of them.
             self._hidden, self._next = np.zeros(count, np.bool_), 0
-            self._stale, at_most = count, None
-        elif positions is not self._positions or key != self._key:
-            self._stale = count
+            self._stale, exactly = count, True
+        elif key != self._key:
+            self._stale, self._in_one_paint = count, IN_ONE_PAINT
+        elif positions is not self._positions:
+            self._stale, self._in_one_paint = count, WHILE_THEY_MOVE
         self._positions, self._key = positions, key
-        number = self._stale if at_most is None else min(at_most, self._stale)
+        number = self._stale if exactly else min(self._in_one_paint, self._stale)
         if number:
             rows = np.arange(self._next, self._next + number) % count
             self._hidden[rows] = self._projection.behind_surface(positions[rows])

@@ -53,8 +53,8 @@ from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.style import theme
 from pinwarp.session.warp.ghost import Ghost
 
-# After so long more is found out about what the bone hides.
-_AGAIN_MS = 25
+# Once nothing was painted for so long, all is found out about what the bone hides.
+_REST_MS = 150
 _OUT_OF_SIGHT = "The bone is out of sight.\nHome looks at both bones as a whole."
 
 
@@ -75,8 +75,8 @@ class MarkerLayer(QWidget):
         self._legend: PaintedLegend | None = None
         self._scene = Scene(Side.SOURCE)
         self.semilandmarks = points = SemilandmarkPainter(projection, self._project)
-        self._again = QTimer(self, singleShot=True, interval=_AGAIN_MS)
-        self._again.timeout.connect(self.update)
+        self._again = QTimer(self, singleShot=True, interval=_REST_MS)
+        self._again.timeout.connect(self._on_rest)
         # In this order: what comes later lies on top.
         self._painters: dict[type[Drawable], Callable[[QPainter, Any], None]] = {
             Caption: self._paint_caption,
@@ -178,8 +178,13 @@ class MarkerLayer(QWidget):
                     paint(painter, thing)
             if self.is_bone_lost and self._scene.of(Hint) is None:
                 self._paint_hint(painter, Hint(_OUT_OF_SIGHT))
+        self.semilandmarks.is_resting = False
         if self.semilandmarks.is_stale:
             self._again.start()
+
+    def _on_rest(self) -> None:
+        self.semilandmarks.is_resting = True
+        self.update()
 
     @property
     def is_bone_lost(self) -> bool:

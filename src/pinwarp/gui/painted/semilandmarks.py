@@ -37,10 +37,16 @@ class SemilandmarkPainter:
         Sees the bone.
     project
         Returns where (n, 3) positions are on the sheet.
+
+    Attributes
+    ----------
+    is_resting : bool
+        Whether the next paint may take its time to find out all that the bone hides.
     """
 
     def __init__(self, projection: Projection, project: Callable[[NDArray], NDArray]) -> None:
         self._project = project
+        self.is_resting = False
         self._hidden_dots = HiddenPlaces(projection)
         self._hidden_paths = HiddenPlaces(projection)
         self._hidden_handles = HiddenPlaces(projection)
@@ -57,13 +63,13 @@ class SemilandmarkPainter:
 
     def hidden_dots(self, dots: Dots) -> NDArray[np.bool_]:
         """Return which dots the bone hides."""
-        return self._hidden_dots.of(dots.positions, None)
+        return self._hidden_dots.of(dots.positions, exactly=True)
 
     def paint_dots(self, painter: QPainter, dots: Dots, ratio: float) -> None:
         """Paint a dot for each semilandmark: hollow where it was freed, faint behind the bone."""
         if not len(dots.positions):
             return
-        hidden = self._hidden_dots.of(dots.positions)
+        hidden = self._hidden_dots.of(dots.positions, exactly=self.is_resting)
         places = self._project(dots.positions)
         device = painter.device()
         seen = ((places >= -9) & (places <= [device.width() + 9, device.height() + 9])).all(axis=1)
@@ -87,7 +93,10 @@ class SemilandmarkPainter:
         """Paint curves as lines: dashed where they are only expected, faint behind the bone."""
         places, samples = self._places_of(paths)
         # All at once: to ask the camera takes longer than to paint a line.
-        places, hidden = self._project(places), self._hidden_paths.of(samples)
+        places, hidden = (
+            self._project(places),
+            self._hidden_paths.of(samples, exactly=self.is_resting),
+        )
         painter.setBrush(Qt.BrushStyle.NoBrush)
         first = first_sample = 0
         for line in paths.lines:
@@ -122,13 +131,13 @@ class SemilandmarkPainter:
         if not handles.handles:
             return None
         distances = np.hypot(*(self.handle_places(handles) - [at.x(), at.y()]).T)
-        distances[self._hidden_handles.of(self._handle_positions(handles), None)] = np.inf
+        distances[self._hidden_handles.of(self._handle_positions(handles), exactly=True)] = np.inf
         row = int(np.argmin(distances))
         return handles.handles[row] if distances[row] <= within else None
 
     def paint_handles(self, painter: QPainter, handles: Handles, ratio: float) -> None:
         """Paint handles as squares: hollow where they are only expected."""
-        hidden = self._hidden_handles.of(self._handle_positions(handles), None)
+        hidden = self._hidden_handles.of(self._handle_positions(handles), exactly=True)
         places = self.handle_places(handles).tolist()
         half = _handle_extent() / 2
         for handle, (x, y), is_hidden in zip(handles.handles, places, hidden.tolist(), strict=True):
