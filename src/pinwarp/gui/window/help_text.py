@@ -62,10 +62,10 @@ ABOUT_SEMILANDMARKS = """
 can say that, only that each point answers to one somewhere. <b>Semilandmarks</b> are such points:
 they lie on the destination's curves and surface, and <b>slide</b> there until the warp bends least
 (Bookstein 1997; Gunz, Mitteroecker and Bookstein 2005).</p>
-<p>A <b>curve</b> is drawn along a crest of the source, click by click; at a landmark it is
-anchored. On the destination it shows, dashed, where it is expected. Accept it there, or drag its
-handles: then its points slide on that line, else they slide along their tangents. A <b>patch</b> covers
-the surface, or what a closed curve encloses, with points far from one another and from landmarks.</p>
+<p>A <b>curve</b> is drawn along a crest of the source, click by click; a landmark anchors it.
+On the destination it shows, dashed, where it is expected. Accept it there, or drag its handles:
+then its points slide on that line, else they slide along their tangents. A <b>patch</b> covers the
+surface, or what a closed curve encloses, with points far from one another and from landmarks.</p>
 <p>A point whose place on the destination faces elsewhere, or lies where the scan ends, has no
 counterpart: it is <b>freed</b>, drawn hollow, and takes no part. One that is known better can be
 <b>pinned</b>: it becomes a pair.</p>
