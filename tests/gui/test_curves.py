@@ -106,6 +106,7 @@ def test_a_curve_is_drawn_click_by_click_and_seen_on_both_bones(user):
     assert [handle.is_ghost for handle in handles(user, DESTINATION)] == [True, True]
     assert len(handles(user, SOURCE)) == 2
     assert part(user).note.text() == "20 semilandmarks"
+    user.editor.look(hovered=None)
     assert "Space accepts the ghost" in user.window.parts.guidance.hint.text()
     # Nothing of it catches the mouse but the handles.
     user.editor.look(group="")
@@ -275,7 +276,7 @@ def test_counts_names_and_points_are_changed_in_the_list_and_come_back_from_a_fi
     slider.setFocus()
     for _ in range(5):
         QTest.keyClick(slider, Qt.Key.Key_Right)
-        user.settle()
+    user.settle()
     assert user.session.groups[0].count == 36
     user.press(Qt.Key.Key_Z, CTRL)
     assert user.session.groups[0].count == 20
