@@ -83,6 +83,10 @@ class ImportDialog(QDialog):
         self.buttons.accepted.connect(self.accept)
         self.buttons.rejected.connect(self.reject)
         self._show()
+        layout = self.layout()
+        if not arriving.landmarks and layout is not None:
+            # Of a file of nothing but curves the lines say all.
+            self.resize(_SIZE.width(), layout.totalHeightForWidth(_SIZE.width()))
 
     # What is there
 
@@ -141,9 +145,6 @@ class ImportDialog(QDialog):
                 ways.addWidget(button)
             column.addLayout(ways)
             column.addWidget(self.table, 1)
-        else:
-            # A file of nothing but curves: the lines below say all.
-            column.addStretch(1)
         self.outcome.setWordWrap(True)
         self.outcome.setTextFormat(Qt.TextFormat.PlainText)
         column.addWidget(self.outcome)
@@ -235,7 +236,7 @@ class ImportDialog(QDialog):
         self.model.show_arrivals(found)
         waiting = left_waiting(self._session, self._arriving, found)
         groups = group_words(self._session, self._arriving, self.choice)
-        self.outcome.setText(" ".join(filter(None, (summary(found, waiting), *groups))))
+        self.outcome.setText("\n".join(filter(None, (summary(found, waiting), *groups))))
 
     def _chosen_fits(self) -> dict[Side, Fit]:
         return {
