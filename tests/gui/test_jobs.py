@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import threading
 import time
 
@@ -116,3 +117,33 @@ def test_slow_jobs_run_in_order_with_progress_and_can_be_cancelled(qapp, qtbot, 
     jobs.run("Short", lambda _progress: "done", log.append, log.append)
     qtbot.waitUntil(lambda: log[-1] == "done")
     jobs.shut_down()
+
+
+def test_nothing_is_kept_of_what_has_run(qapp, qtbot):
+    """PySide keeps some of what runs in Qt's pool for ever when the machine is busy."""
+    stop = threading.Event()
+
+    def be_busy():
+        while not stop.is_set():
+            sum(range(1000))
+
+    def alive():
+        gc.collect()
+        return sum(type(thing).__module__ == LatestWins.__module__ for thing in gc.get_objects())
+
+    busy = [threading.Thread(target=be_busy) for _ in range(3)]
+    for thread in busy:
+        thread.start()
+    try:
+        jobs, arrived = LatestWins(lambda request: request), []
+        jobs.computed.connect(arrived.append)
+        before = alive()
+        for request in range(100):
+            jobs.request(request)
+            qtbot.waitUntil(lambda request=request: arrived[-1:] == [request], timeout=30_000)
+        assert alive() == before
+        jobs.shut_down()
+    finally:
+        stop.set()
+        for thread in busy:
+            thread.join()

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from typing import Any
 
-from qtpy.QtCore import QObject, QRunnable, QThreadPool, Signal
+from qtpy.QtCore import QObject, Signal
 
 from pinwarp.core.errors import PinwarpError
 
@@ -22,26 +24,37 @@ class _Outcome(QObject):
     progressed = Signal(float, str)
 
 
-class _Work(QRunnable):
-    def __init__(self, number: int, function: Callable[[], Any], outcome: _Outcome) -> None:
-        super().__init__()
-        self._number = number
-        self._function = function
-        self._outcome = outcome
+class _Worker:
+    """One thread that does what it is asked to, one thing after the other.
 
-    def run(self) -> None:
-        # On a busy machine PySide now and then keeps a runnable for ever: without a window then.
-        function, outcome = self._function, self._outcome
-        del self._function, self._outcome
+    Not Qt's pool: on a busy machine PySide now and then keeps what was run there for ever.
+
+    Parameters
+    ----------
+    outcome
+        Told of each result or error, by the number it was asked for with.
+    """
+
+    def __init__(self, outcome: _Outcome) -> None:
+        self._outcome = outcome
+        self._thread = ThreadPoolExecutor(1)
+
+    def start(self, number: int, function: Callable[[], Any]) -> None:
+        """Do something once all before it is done."""
+        self._thread.submit(self._run, number, function)
+
+    def _run(self, number: int, function: Callable[[], Any]) -> None:
         result, error = None, None
         try:
             result = function()
         except Exception as exception:  # handed to the UI thread, which shows or raises it
             error = exception
-        try:
-            outcome.finished.emit(self._number, result, error)
-        except RuntimeError:  # the window closed while this was computed
-            return
+        with suppress(RuntimeError):  # the window closed while this was computed
+            self._outcome.finished.emit(number, result, error)
+
+    def shut_down(self) -> None:
+        """Wait until all is done."""
+        self._thread.shutdown()
 
 
 class LatestWins(QObject):
@@ -59,9 +72,8 @@ class LatestWins(QObject):
     def __init__(self, function: Callable[[Any], Any], parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._function = function
-        self._pool = QThreadPool(self)
-        self._pool.setMaxThreadCount(1)
         self._outcome = _Outcome()
+        self._worker = _Worker(self._outcome)
         self._outcome.finished.connect(self._on_finished)
         self._waiting: list[Any] = []
         self._busy = self._is_shut_down = False
@@ -85,7 +97,7 @@ class LatestWins(QObject):
 
     def _start(self, request: Any) -> None:
         self._busy = True
-        self._pool.start(_Work(0, lambda: self._function(request), self._outcome))
+        self._worker.start(0, lambda: self._function(request))
 
     def _on_finished(self, _number: int, result: Any, error: Exception | None) -> None:
         self._busy = False
@@ -104,7 +116,7 @@ class LatestWins(QObject):
         self._is_shut_down = True
         self._waiting.clear()
         self._outcome.finished.disconnect(self._on_finished)
-        self._pool.waitForDone()
+        self._worker.shut_down()
 
 
 class SlowJob(QObject):
@@ -116,9 +128,8 @@ class SlowJob(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._pool = QThreadPool(self)
-        self._pool.setMaxThreadCount(1)
         self._outcome = _Outcome()
+        self._worker = _Worker(self._outcome)
         self._outcome.finished.connect(self._on_finished)
         self._outcome.progressed.connect(self.progressed)
         self._cancel = threading.Event()
@@ -154,7 +165,7 @@ class SlowJob(QObject):
         self._number += 1
         self._handlers[self._number] = (done, failed)
         self.started.emit(title)
-        self._pool.start(_Work(self._number, lambda: function(self._progress), self._outcome))
+        self._worker.start(self._number, lambda: function(self._progress))
 
     def _progress(self, share: float, stage: str) -> None:
         if self._cancel.is_set():
@@ -187,4 +198,4 @@ class SlowJob(QObject):
         self.cancel()
         self._handlers.clear()
         self._outcome.finished.disconnect(self._on_finished)
-        self._pool.waitForDone()
+        self._worker.shut_down()
