@@ -33,6 +33,7 @@ from pinwarp.session.outputs.semilandmarks import semilandmarks_on
 from pinwarp.session.study.batch import plan
 from pinwarp.session.study.subject import made_from, warp_subject
 from pinwarp.session.warp.ghost import ghost_of
+from pinwarp.session.warp.refining import RefinementOptions
 from pinwarp.session.warp.result import WarpInputs
 from pinwarp.session.warp.solved import solved
 from pinwarp.session.warp.solver import WarpSolver
@@ -187,6 +188,17 @@ def test_semilandmarks_slide_on_each_subject(tasks):
         assert outcome.check.fitted > 25
         alone = warp_subject(replace(task, session=replace(task.session, groups=())))
         assert outcome.check.distance.mean < 0.8 * alone.check.distance.mean
+
+
+def test_a_refined_batch_needs_no_slide(tasks):
+    options = RefinementOptions()
+    outcome = warp_subject(replace(tasks[1], refinement=options))
+    assert outcome.error == ""
+    assert outcome.check.groups == ()
+    assert outcome.check.fitted > 100
+    # Why nothing slid is told in words of its own.
+    (told,) = [note for note in outcome.check.notes if "refined" in note.lower()]
+    assert "landmarks alone" not in told
 
 
 def test_a_changed_group_makes_subjects_again(tasks):

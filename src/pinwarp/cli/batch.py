@@ -131,15 +131,7 @@ def batch(
         inputs=given,
         refinement=_refinement(refine, feature, tolerance, turn),
     )
-    if drawn := [x.name for x in shared.groups if isinstance(x, Curve) and x.drawn]:
-        tell_notes(
-            [
-                f"{listed(drawn)}: drawn on the session's own destination, which no subject is. "
-                "On each subject the points slide along their tangents."
-            ]
-        )
-    if refine and shared.groups:
-        tell_notes(["Refined: the places that are fitted take the place of curves and patches."])
+    tell_notes(_about_groups(shared, refine))
     if subjects.unused:
         tell_notes([f"{manifest.name}: not used: {', '.join(subjects.unused)}."])
     with progress_bar() as progress, _stopped_by_signals() as stop:
@@ -167,6 +159,22 @@ def batch(
         raise typer.Exit(CLUSTER_LOST if tally.ended else INTERRUPTED)
     if tally.failed:
         raise typer.Exit(FAILED)
+
+
+def _about_groups(session: Session, refine: bool) -> list[str]:
+    """Say what of curves and patches does not hold on subjects."""
+    if refine and session.groups:
+        return [
+            "Curves and patches have no part: each warp is fitted to the surface by places all "
+            "over it instead."
+        ]
+    drawn = [x.name for x in session.groups if isinstance(x, Curve) and x.drawn]
+    if not drawn:
+        return []
+    return [
+        f"{listed(drawn)}: drawn on the session's own destination, which no subject is. On each "
+        "subject the points slide along their tangents."
+    ]
 
 
 def _refinement(

@@ -41,11 +41,8 @@ def semilandmarks_on(session: Session | SolvedWarp, side: Side) -> tuple[PointSe
         raise PinwarpError("There are no curves or patches, so there are no semilandmarks yet.")
     at_rest = warp.result.semilandmarks
     if at_rest is None:
-        raise PinwarpError(
-            warp.result.not_sliding
-            or "The warp is refined: what was fitted took the place of curves and patches. "
-            "Take back the refinement to export them."
-        )
+        assert warp.result.not_sliding is not None, "what does not slide says why"
+        raise PinwarpError(warp.result.not_sliding)
     marks = [x for x in session.landmarks if x.role is Role.PAIR and x.enabled]
     left = [x.name for x in session.landmarks if x.role is not Role.PAIR or not x.enabled]
     rows = {mark.name: row for row, mark in enumerate(marks)}

@@ -128,7 +128,7 @@ def _warp(task: Task) -> tuple[Check, tuple[str, ...]]:
             folding = counted(refined.folding, "vertex", "vertices")
             notes = (*notes, f"{folding} would have folded: refined less.")
     warp = solved(session)
-    if warp.result.not_sliding is not None:
+    if task.refinement is None and warp.result.not_sliding is not None:
         # Where the others are warped with semilandmarks, one without would not be comparable.
         raise PinwarpError(warp.result.not_sliding)
     checked = check(warp)

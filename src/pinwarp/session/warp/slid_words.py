@@ -62,6 +62,9 @@ def not_sliding_note(result: WarpResult) -> tuple[str, ...]:
     """
     if result.not_sliding is None:
         return ()
+    if result.inputs.refinement is not None:
+        # That is another warp, and says so itself.
+        return (result.not_sliding,)
     return (
         "Curves and patches have no part in this warp, which is that of the landmarks alone: "
         f"{result.not_sliding}",
