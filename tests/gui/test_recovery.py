@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import shutil
+import threading
 from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
@@ -15,7 +16,9 @@ from tests.gui.conftest import Driver, ScriptedDialogs, close_window, open_windo
 
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.gui.app import begin
+from pinwarp.gui.files import session_meshes
 from pinwarp.gui.files.documents import Opening
+from pinwarp.gui.files.file_dialogs import Answer
 from pinwarp.gui.files.lost_work_dialog import (
     LostAnswer,
     LostWorkDialog,
@@ -23,6 +26,7 @@ from pinwarp.gui.files.lost_work_dialog import (
     question_about,
     words_about,
 )
+from pinwarp.io.meshes import read_mesh
 from pinwarp.io.samples import assets_folder
 from pinwarp.io.session_file import MeshReference, SessionRecord
 from pinwarp.io.work_file import UnsavedWork
@@ -106,6 +110,29 @@ def test_restored_work_survives_a_second_crash(user, crashed, tmp_path):
     assert work_files(crashed / "state") == []
     with next_start(user, twice, LostAnswer.RESTORE) as once_more:
         assert to_record(once_more.session) == to_record(user.session)
+
+
+def test_work_done_while_lost_work_is_read_stays_when_the_user_says_so(user, crashed, monkeypatch):
+    gate = threading.Event()
+    with next_start(user, crashed, LostAnswer.LATER) as driver:
+        driver.open_sample()
+        at = driver.free_place(SOURCE)
+        monkeypatch.setattr(
+            session_meshes, "read_mesh", lambda *a, **k: gate.wait(30) and read_mesh(*a, **k)
+        )
+        driver.dialogs.lost, driver.dialogs.unsaved = [LostAnswer.RESTORE], Answer.CANCEL
+        driver.window.actions_by_key["restore"].trigger()
+        QTest.mouseClick(driver.window.viewports[SOURCE], Qt.MouseButton.LeftButton, pos=at)
+        driver.qtbot.waitUntil(lambda: driver.editor.is_dirty)
+        mine = driver.session.landmarks
+        gate.set()
+        driver.settle()
+        assert driver.dialogs.unsaved_questions == 1
+        assert (driver.session.landmarks, driver.editor.path) == (mine, None)
+        driver.dialogs.lost, driver.dialogs.unsaved = [LostAnswer.RESTORE], Answer.DISCARD
+        driver.trigger("restore")
+        assert driver.editor.path is not None, "the lost work was still there to be restored"
+        assert driver.editor.is_dirty
 
 
 def test_discarded_work_is_gone_and_the_named_file_opens(user, crashed, sample_copy):

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import errno
 import shutil
+import threading
 
 import pytest
 from qtpy.QtCore import Qt, QTimer
+from qtpy.QtTest import QTest
 from qtpy.QtWidgets import QApplication, QMessageBox
 
 from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
-from pinwarp.gui.files import saving
+from pinwarp.gui.files import saving, session_meshes
 from pinwarp.gui.files.file_dialogs import Answer, FileDialogs, OpenTwice, Overwrite
 from pinwarp.io import backup
 from pinwarp.io.file_names import backup_of
@@ -286,3 +288,59 @@ def test_a_mesh_of_the_same_name_can_be_used(user, tmp_path):
     other = tmp_path / "femur.stl"
     asked = FileDialogs(user.window).ask_missing_mesh("source", tmp_path / "x" / "femur.stl", other)
     assert asked == other
+
+
+# Work that is done while another session is read
+
+
+@pytest.fixture
+def slow_reading(monkeypatch):
+    """Meshes are read once this is set."""
+    gate = threading.Event()
+
+    def read_later(*args, **kwargs):
+        gate.wait(30)
+        return read_mesh(*args, **kwargs)
+
+    yield lambda: monkeypatch.setattr(session_meshes, "read_mesh", read_later) or gate
+    gate.set()
+
+
+def click_meanwhile(user, at) -> None:
+    QTest.mouseClick(user.window.viewports[SOURCE], Qt.MouseButton.LeftButton, pos=at)
+    user.qtbot.waitUntil(lambda: user.editor.is_dirty)
+
+
+@pytest.mark.parametrize("answer", Answer)
+def test_work_done_while_a_session_is_read_is_asked_about(
+    user, sample_copy, tmp_path, slow_reading, answer
+):
+    user.open_sample()
+    at, gate = user.free_place(SOURCE), slow_reading()
+    user.dialogs.opens = [sample_copy]
+    user.window.actions_by_key["open_session"].trigger()
+    assert user.dialogs.unsaved_questions == 0
+    click_meanwhile(user, at)
+    mine, saved = user.session.landmarks, tmp_path / "mine.pinwarp.csv"
+    user.dialogs.unsaved, user.dialogs.saves = answer, [saved]
+    gate.set()
+    user.settle()
+    assert user.dialogs.unsaved_questions == 1
+    if answer is Answer.CANCEL:
+        assert (user.session.landmarks, user.editor.path) == (mine, None)
+        assert user.window.statusBar().currentMessage() == "Nothing was opened: this session stays"
+    else:
+        assert user.editor.path == sample_copy
+    if answer is Answer.SAVE:
+        assert len(read_session(saved).landmarks) == len(mine)
+
+
+def test_a_session_read_while_nothing_is_done_asks_nothing(user, sample_copy, slow_reading):
+    user.open_sample()
+    gate = slow_reading()
+    for _ in range(2):
+        user.window.parts.documents.open_session(sample_copy)
+    gate.set()
+    user.settle()
+    assert user.dialogs.unsaved_questions == 0
+    assert user.editor.path == sample_copy

@@ -298,13 +298,18 @@ class Documents(Capability):
             self._tasks.dialogs.tell_error("Cannot open the session", words_of(error))
             return
 
-        def arrived(session: Session) -> None:
+        before = self._editor.committed
+
+        def arrived(session: Session) -> bool:
+            if not self._saving.may_replace(before):
+                return False
             if as_new:
                 self._editor.replace_all(session, None)
             else:
                 self._editor.replace_all(session, path, sha256=sha256)
                 self._recent.add(path)
             self._tasks.said.emit(f"Opened {path.name}: {len(session.pairs)} pairs")
+            return True
 
         self._meshes.open(record, path.parent, f"Opening {path.name}", arrived)
 

@@ -120,15 +120,17 @@ class Recovery(QObject, Capability):
             self._journal.close()
 
     def _restore(self, lost: LostWork, instead_of: Sequence[Path]) -> None:
-        work = lost.work
+        work, before = lost.work, self._editor.committed
 
-        def arrived(session: Session) -> None:
+        def arrived(session: Session) -> bool:
+            if not self._saving.may_replace(before):
+                return False
             lock = lost.claim()
             if lock is None:
                 self._tasks.dialogs.tell(
                     "Restored elsewhere", f"Another window has taken {lost.name} meanwhile."
                 )
-                return
+                return False
             self._editor.replace_all(session, work.path, sha256=work.sha256, saved=False)
             if self._journal is not None:
                 self._journal.inherit(lost.folder, lock)
@@ -140,6 +142,7 @@ class Recovery(QObject, Capability):
                 f"Restored {lost.name}: {lost.pairs} pairs, not saved yet"
                 + (f"; not opened: {', '.join(left_out)}" if left_out else "")
             )
+            return True
 
         folder = work.path.parent if work.path is not None else None
         self._meshes.open(work.record, folder, f"Restoring {lost.name}", arrived)

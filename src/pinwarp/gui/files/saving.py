@@ -76,6 +76,19 @@ class Saving(Capability):
             return self.save()
         return answer is Answer.DISCARD
 
+    def may_replace(self, asked: Session) -> bool:
+        """Ask again about what was done while the files of another session were read.
+
+        Parameters
+        ----------
+        asked
+            The session that was asked about before the reading, or that was not worth asking.
+        """
+        if self._editor.committed == asked or self.may_lose_changes():
+            return True
+        self._tasks.said.emit("Nothing was opened: this session stays")
+        return False
+
     def save(self) -> bool:
         """Save where the session came from, or ask; say whether it was saved."""
         path, known = self._editor.path, self._editor.file_sha256

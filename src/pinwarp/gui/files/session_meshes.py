@@ -30,7 +30,7 @@ class _Opening:
     record: SessionRecord
     folder: Path | None
     title: str
-    arrived: Callable[[Session], None]
+    arrived: Callable[[Session], bool]
     references: dict[Side, MeshReference]
     places: dict[Side, Path | None] = field(default_factory=dict)
     # Sides whose mesh the user has accepted though it is another than it was.
@@ -73,7 +73,7 @@ class SessionMeshes:
         record: SessionRecord,
         folder: Path | None,
         title: str,
-        arrived: Callable[[Session], None],
+        arrived: Callable[[Session], bool],
     ) -> None:
         """Find and read the meshes of a session.
 
@@ -86,7 +86,8 @@ class SessionMeshes:
         title
             What the user reads meanwhile.
         arrived
-            Called with the session and the meshes that could be read; problems are told after.
+            Called with the session and the meshes that could be read; says whether it was taken.
+            Problems are told after that.
         """
         references = {Side.SOURCE: record.source_mesh, Side.DESTINATION: record.destination_mesh}
         there = {side: mesh for side, mesh in references.items() if mesh is not None}
@@ -156,9 +157,9 @@ class SessionMeshes:
 
         def arrived(files: dict[Side, MeshFile | PinwarpError]) -> None:
             found = {side: file for side, file in files.items() if isinstance(file, MeshFile)}
-            opening.arrived(
-                from_record(opening.record, found.get(Side.SOURCE), found.get(Side.DESTINATION))
-            )
+            meshes = (found.get(Side.SOURCE), found.get(Side.DESTINATION))
+            if not opening.arrived(from_record(opening.record, *meshes)):
+                return
             self._report(opening, found)
             problems = [str(error) for error in files.values() if isinstance(error, PinwarpError)]
             if problems:
