@@ -12,8 +12,9 @@ from pinwarp.io.samples import sample_session
 from pinwarp.session import edits
 from pinwarp.session.keeping.files import read_session
 from pinwarp.session.warp.accepting import accepted
+from pinwarp.session.warp.expected import destination_path
 from pinwarp.session.warp.result import WarpInputs
-from pinwarp.session.warp.sliding import Finders, destination_path
+from pinwarp.session.warp.sliding import Finders
 from pinwarp.session.warp.solver import WarpSolver
 
 

@@ -19,9 +19,9 @@ from pinwarp.io.samples import sample_session
 from pinwarp.session import edits
 from pinwarp.session.judging.quality import quality_of
 from pinwarp.session.keeping.files import read_session, write_session
+from pinwarp.session.warp.expected import destination_path, expected_handles
 from pinwarp.session.warp.refining import RefinementOptions, refined_session
 from pinwarp.session.warp.result import WarpInputs
-from pinwarp.session.warp.sliding import destination_path, expected_handles
 from pinwarp.session.warp.solver import WarpSolver
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
@@ -261,3 +261,11 @@ def test_points_at_one_place_take_part_once(grouped, finders, tmp_path):
     path = tmp_path / "twice.pinwarp.csv"
     write_session(path, twice)
     assert read_session(path).groups == twice.groups
+
+
+def test_a_point_that_is_excluded_makes_room_for_one_at_its_place(grouped, finders):
+    curve = grouped.group("curve_1")
+    twice, _ = edits.add_curve(grouped, curve.handles, finders[SOURCE], count=7)
+    without = edits.exclude_points(twice, "curve_1", [3])
+    numbers = [group.numbers.tolist() for group in rest_of(without).semilandmarks.groups]
+    assert numbers[1:] == [[0, 1, 2, 4, 5, 6], [3]]

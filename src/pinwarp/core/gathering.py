@@ -237,11 +237,16 @@ def gathered(
             courses.append(course_of(group, source))
     both = list(zip(groups, courses, strict=True))
     every = [course.points if course is not None else _points(x) for x, course in both]
-    is_apart = _apart([*landmarks.values()], every, source.surface.mesh.diagonal)
+    chosen = [
+        [n for n in range(len(own)) if n not in group.excluded]
+        for group, own in zip(groups, every, strict=True)
+    ]
+    wanted = [[own[n] for n in kept] for own, kept in zip(every, chosen, strict=True)]
+    is_apart = _apart([*landmarks.values()], wanted, source.surface.mesh.diagonal)
     points: list[Position] = []
     numbers, curves = [], []
-    for (group, course), own, apart in zip(both, every, is_apart, strict=True):
-        used = [n for n, ok in enumerate(apart) if ok and n not in group.excluded]
+    for (group, course), own, kept, apart in zip(both, every, chosen, is_apart, strict=True):
+        used = [n for n, ok in zip(kept, apart, strict=True) if ok]
         first = len(rows) + len(points)
         points += [own[n] for n in used]
         numbers.append(np.array(used, np.int64))

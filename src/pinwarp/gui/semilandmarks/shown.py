@@ -14,13 +14,12 @@ from pinwarp.core.groups import Curve, Group
 from pinwarp.core.landmarks import Position, Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.session.session import Session
+from pinwarp.session.warp.expected import destination_path, expected_handles
 from pinwarp.session.warp.ghost import FEWEST_PAIRS
 from pinwarp.session.warp.result import WarpResult
 from pinwarp.session.warp.sliding import (
     Finders,
     SlidGroup,
-    destination_path,
-    expected_handles,
 )
 
 Matrix = NDArray[np.float64]

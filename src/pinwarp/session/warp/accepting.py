@@ -14,7 +14,7 @@ from pinwarp.core.landmarks import as_position
 from pinwarp.core.spline import Spline
 from pinwarp.session import edits
 from pinwarp.session.session import Session
-from pinwarp.session.warp.sliding import expected_handles
+from pinwarp.session.warp.expected import expected_handles
 
 Matrix = NDArray[np.float64]
 

@@ -19,8 +19,8 @@ from pinwarp.core.conditions import held
 from pinwarp.core.curves import PathFinder
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.factor import SourceFactor, factorise
-from pinwarp.core.gathering import Course, gathered, path_of
-from pinwarp.core.groups import Curve, Group, Patch
+from pinwarp.core.gathering import Course, gathered
+from pinwarp.core.groups import Group, Patch
 from pinwarp.core.held_slide import HeldSlide
 from pinwarp.core.landmarks import Position, Side, as_position
 from pinwarp.core.mesh import Mesh
@@ -361,41 +361,3 @@ def _by_group(
         )
         first = own.stop
     return tuple(several)
-
-
-def expected_handles(curve: Curve, spline: Spline, surface: Surface) -> Matrix:
-    """Return (h, 3) where the handles of a curve are on the destination, or are expected there.
-
-    Parameters
-    ----------
-    curve
-        The curve.
-    spline
-        The warp.
-    surface
-        The destination's.
-    """
-    places = surface.closest(spline.evaluate([handle.source for handle in curve.handles]))
-    return np.array(
-        [
-            place if handle.destination is None else handle.destination
-            for handle, place in zip(curve.handles, places.positions, strict=True)
-        ]
-    )
-
-
-def destination_path(curve: Curve, course: Course, spline: Spline, finder: PathFinder) -> Matrix:
-    """Return the (p, 3) way of a curve over the destination: drawn there, or as it is carried.
-
-    Parameters
-    ----------
-    curve, course
-        The curve, and where it runs on the source.
-    spline
-        The warp.
-    finder
-        Of the destination's surface.
-    """
-    if curve.is_drawn:
-        return path_of(curve, finder, Side.DESTINATION).places
-    return finder.surface.closest(spline.evaluate(course.path.places)).positions
