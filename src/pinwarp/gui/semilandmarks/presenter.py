@@ -99,8 +99,8 @@ class Semilandmarks(Capability):
         )
         self.panel = SemilandmarkPanel(
             [by_key[key] for key in shown_keys.split()],
-            "Semilandmarks are points along curves and over surfaces whose counterpart nobody places: "
-            "they slide until the warp bends least.\n\n"
+            "Semilandmarks are points along curves and over surfaces whose counterparts nobody "
+            "places: they slide until the warp bends least.\n\n"
             f"{by_key['draw_curve'].keys} draws a curve along a crest of the source, "
             f"{by_key['add_patch'].keys} spreads a patch over its surface.",
         )
