@@ -13,7 +13,7 @@ from pinwarp.core.components import Components
 from pinwarp.core.curves import PathFinder
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.gathering import course_of, path_of
-from pinwarp.core.groups import Handle
+from pinwarp.core.groups import Curve, Handle
 from pinwarp.core.landmarks import Landmark, Role, Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.readiness import InsideOutError
@@ -33,7 +33,12 @@ from pinwarp.session.outputs.exports import (
 )
 from pinwarp.session.outputs.script import script_of
 from pinwarp.session.session import Session
-from pinwarp.session.warp.refined import is_out_of_date, refinement_in_use, warp_in_words
+from pinwarp.session.warp.refined import (
+    inputs_of,
+    is_out_of_date,
+    refinement_in_use,
+    warp_in_words,
+)
 from pinwarp.session.warp.refining import RefinementOptions, refined_session, verified
 from pinwarp.session.warp.result import WarpInputs
 from pinwarp.session.warp.solved import solved
@@ -318,8 +323,21 @@ def test_a_curve_drawn_on_both_bones_is_kept_to_and_its_change_puts_out_of_date(
     assert solved(kept).residuals.max() < 1e-9
     assert refinement_in_use(kept) is not None
     assert is_out_of_date(edits.set_count(kept, "curve_1", 4, finders[Side.SOURCE]))
+    assert is_out_of_date(edits.exclude_points(kept, "curve_1", [4]))
+    assert refinement_in_use(edits.rename_group(kept, "curve_1", "crest")) is not None
     # A curve that is only a ghost does not act on it.
     assert refinement_in_use(edits.remove_groups(free, ["curve_1"])) is not None
+
+
+def test_what_the_landmark_at_a_drawn_curve_is_called_does_not_matter(begun):
+    ends = begun.pairs[:2]
+    handles = tuple(Handle(end.source, end.destination, end.name) for end in ends)
+    curve = Curve("crest", handles, drawn=True)
+    drawn = replace(begun, groups=(curve,))
+    assert inputs_of(edits.rename(drawn, ends[0].name, "apex")) == inputs_of(drawn)
+    # Its other end is another landmark, though at the same place.
+    loose = replace(curve, handles=(handles[0], replace(handles[1], landmark="")))
+    assert inputs_of(replace(begun, groups=(loose,))) != inputs_of(drawn)
 
 
 def test_leaving_out_an_anchor_leaves_out_its_curve(begun):

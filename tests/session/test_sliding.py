@@ -234,6 +234,10 @@ def test_the_file_gives_back_groups_and_rest_and_needs_no_mesh_for_it(grouped, a
     result = rest_of(without)
     assert result.not_sliding is None
     np.testing.assert_allclose(result.vertices, at_rest.vertices, atol=1e-4)
+    # Names are no part of it.
+    renamed = edits.rename(without, "greater_trochanter_tip", "apex")
+    renamed = edits.rename_group(renamed, "curve_1", "crest")
+    assert rest_of(renamed).not_sliding is None
     # Once a landmark was moved the old rest means nothing any more.
     moved = rest_of(pushed(without, "midshaft_anterior", [1.0, 0.0, 0.0]))
     assert "there is no destination mesh" in moved.not_sliding

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import functools
-import hashlib
 from collections.abc import Sequence
-from dataclasses import replace
 
 from pinwarp.core.factor import factorise
 from pinwarp.core.groups import Curve
-from pinwarp.core.landmarks import Side
 from pinwarp.core.spline import Spline, solve
 from pinwarp.core.words import counted
 from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.io.setting_keys import setting_lines
 from pinwarp.session.session import Session
 from pinwarp.session.warp.component_words import applied_in_words
+from pinwarp.session.warp.fingerprint import fingerprint, group_parts, mesh_parts
 
 OUT_OF_DATE = (
     "The refinement is out of date, since landmarks, a mesh or the penalty have changed: the warp "
@@ -99,17 +97,16 @@ def inputs_of(session: Session) -> str:
 
     Names, notes, passengers and what of the warp is applied do not matter.
     """
-    meshes = (session.mesh_file(side) for side in Side)
     settings = session.settings.whole
     parts = (
         tuple((pair.source, pair.destination) for pair in session.pairs),
-        tuple(None if x is None else (x.sha256, x.mirrored, float(x.scaled)) for x in meshes),
+        mesh_parts(session),
         # As files say it: a setting that is yet to come and as usual puts nothing out of date.
         tuple(line for always in (True, False) for line in setting_lines(settings, always=always)),
         # Other curves and patches do not act on it.
-        *((replace(x, excluded=frozenset()), sorted(x.excluded)) for x in drawn_curves(session)),
+        *group_parts(session, drawn_curves(session)),
     )
-    return f"sha256:{hashlib.sha256(repr(parts).encode()).hexdigest()[:32]}"
+    return fingerprint(parts)
 
 
 # Every frame and every export of a session asks for the same one.

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import replace
 
-from pinwarp.core.landmarks import Position, Side, as_position
+from pinwarp.core.landmarks import Position, as_position
 from pinwarp.io.group_record import SlidRecord
 from pinwarp.session.session import Session
+from pinwarp.session.warp.fingerprint import fingerprint, group_parts, mesh_parts
 from pinwarp.session.warp.sliding import SlidGroups
 
 
@@ -55,12 +55,7 @@ def with_rest(session: Session, at_rest: SlidGroups | None) -> Session:
 
 
 def _inputs_of(session: Session) -> str:
-    """Return a hash of all that the rest of semilandmarks follows from."""
-    meshes = (session.mesh_file(side) for side in Side)
-    parts = (
-        tuple((pair.name, pair.source, pair.destination) for pair in session.pairs),
-        # Sets have no order of their own.
-        tuple((replace(x, excluded=frozenset()), sorted(x.excluded)) for x in session.groups),
-        tuple(None if x is None else (x.sha256, x.mirrored, float(x.scaled)) for x in meshes),
-    )
-    return f"sha256:{hashlib.sha256(repr(parts).encode()).hexdigest()[:32]}"
+    """Return a hash of all that the rest of semilandmarks follows from: no names."""
+    places = tuple((pair.source, pair.destination) for pair in session.pairs)
+    groups = tuple(group_parts(session, session.groups))
+    return fingerprint((places, groups, mesh_parts(session)))
