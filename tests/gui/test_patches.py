@@ -21,6 +21,7 @@ from tests.gui.drawing import (
     ring,
 )
 
+from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.gui.scene.drawables import DotKind, ToolWords
 from pinwarp.io.samples import sample_session
 from pinwarp.session import edits
@@ -163,3 +164,18 @@ def test_what_is_spread_meanwhile_is_not_lost_nor_laid_over_another_bone(user):
     assert names(user) == []
     # And the window may close while it is busy.
     user.window.actions_by_key["add_whole_patch"].trigger()
+
+
+def test_a_patch_asked_of_the_next_bone_while_one_of_the_last_is_spread_is_made(user):
+    user.open_sample()
+    before = user.session.mesh(SOURCE)
+    # Nothing settles in between, as when hands are fast and the bone is large.
+    QTest.keyClick(user.window, Qt.Key.Key_C, SHIFT)
+    user.window.actions_by_key["mirror_x"].trigger()
+    mirrored = user.session.mesh(SOURCE)
+    assert mirrored is not before
+    QTest.keyClick(user.window, Qt.Key.Key_C, SHIFT)
+    user.settle()
+    assert names(user) == ["patch_1"]
+    points = user.session.groups[0].points
+    assert SurfaceIndex(mirrored).distances(np.array(points)).max() < 1e-6

@@ -61,11 +61,11 @@ class SlowEdits:
         self._editor = editor
         self._finders = finders
         self._say = say
-        self._waiting: list[SlowEdit] = []
+        # With the bone that each was asked of.
+        self._waiting: list[tuple[SlowEdit, Mesh | None]] = []
         self._worker = LatestWins(self._make)
         self._worker.computed.connect(self._on_made)
         self._worker.failed.connect(self._on_failure)
-        self._mesh: Mesh | None = None
         editor.session_changed.connect(self._on_session)
 
     @property
@@ -79,10 +79,9 @@ class SlowEdits:
             # The first of them is under way: it is made to its end.
             first, *others = self._waiting
             key = edit.merge_key
-            self._waiting = [first, *(x for x in others if key is None or x.merge_key != key)]
-        else:
-            self._mesh = self._editor.committed.mesh(Side.SOURCE)
-        self._waiting.append(edit)
+            kept = (x for x in others if key is None or x[0].merge_key != key)
+            self._waiting = [first, *kept]
+        self._waiting.append((edit, self._editor.committed.mesh(Side.SOURCE)))
         self._begin()
 
     def shut_down(self) -> None:
@@ -97,11 +96,10 @@ class SlowEdits:
             return
         base = self._editor.committed
         mesh = base.mesh(Side.SOURCE)
-        if mesh is None or mesh is not self._mesh:
-            # What was asked of another bone means nothing on this one.
-            self._waiting.clear()
-            return
-        self._worker.request(_Request(self._waiting[0], base, mesh))
+        # What was asked of another bone means nothing on this one.
+        self._waiting = [x for x in self._waiting if mesh is not None and x[1] is mesh]
+        if mesh is not None and self._waiting:
+            self._worker.request(_Request(self._waiting[0][0], base, mesh))
 
     def _make(self, request: _Request) -> tuple[_Request, Session | PinwarpError]:
         """Make it; runs in the worker."""
@@ -113,7 +111,7 @@ class SlowEdits:
 
     def _on_made(self, made: tuple[_Request, Session | PinwarpError]) -> None:
         request, outcome = made
-        if not self._waiting or self._waiting[0] is not request.edit:
+        if not self._waiting or self._waiting[0][0] is not request.edit:
             self._begin()
             return
         if self._editor.committed is not request.base or self._editor.is_previewing:
