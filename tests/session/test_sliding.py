@@ -245,6 +245,19 @@ def test_the_file_gives_back_groups_and_rest_and_needs_no_mesh_for_it(grouped, a
     assert path.read_text().startswith("# pinwarp-session: 1\n")
 
 
+@pytest.mark.parametrize("there", [[SOURCE], [DESTINATION], []])
+def test_without_a_mesh_a_session_of_excluded_points_is_saved_with_its_rest(
+    grouped, there, tmp_path
+):
+    path, copy = tmp_path / "femur.pinwarp.csv", tmp_path / "copy.pinwarp.csv"
+    write_session(path, edits.exclude_points(grouped, "curve_1", [0, 3]))
+    without = read_session(path, meshes=there)
+    write_session(copy, without)
+    again = read_session(copy)
+    assert again.groups == without.groups
+    assert again.slid == without.slid
+
+
 def test_a_refined_session_warps_as_it_was_refined(grouped):
     refined, _ = refined_session(grouped, RefinementOptions(smallest_feature=60.0))
     assert rest_of(refined).semilandmarks is None

@@ -98,13 +98,16 @@ class SlidGroup:
     slid: Matrix
 
     @property
-    def points(self) -> tuple[Position, ...]:
-        """All points on the source, those that take no part among them."""
+    def points(self) -> dict[int, Position]:
+        """Where its points are on the source, by number.
+
+        Of a curve without its mesh only those that take part are known.
+        """
         if isinstance(self.group, Patch):
-            return self.group.points
+            return dict(enumerate(self.group.points))
         if self.course is not None:
-            return self.course.points
-        return tuple(map(as_position, self.source))
+            return dict(enumerate(self.course.points))
+        return dict(zip(self.numbers.tolist(), map(as_position, self.source), strict=True))
 
     @property
     def freed(self) -> int:
