@@ -19,8 +19,8 @@ ABOUT = (
 )
 NOT_REFINED = "Not refined: the warp is that of the landmarks alone."
 CANCELLED = "Cancelled: the warp is as it was."
-CHANGED = "Landmarks, a mesh or the penalty changed: the refinement was cancelled."
-CHECK_CHANGED = "Landmarks, a mesh or the penalty changed: the check was cancelled."
+CHANGED = "Landmarks, drawn curves, a mesh or the penalty changed: the refinement was cancelled."
+CHECK_CHANGED = "Landmarks, drawn curves, a mesh or the penalty changed: the check was cancelled."
 CHECK_CANCELLED = "The check was cancelled."
 NOTHING_TO_COMPARE = "The warp is not refined: Ctrl+R refines it to the surface."
 STARTING = "Spreading places over the source"

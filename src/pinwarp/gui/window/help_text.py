@@ -45,8 +45,8 @@ large features first, and lets them slide on it; every landmark is met, or withi
 Where the warp would fold it gets stiffer. Hold <b>R</b> to see the warp without the
 refinement.</p>
 <p>It needs both meshes and at least four pairs that do not lie in a plane. The refinement is kept
-with the session. Once a landmark, a mesh or the penalty changes, it is <b>out of date</b>: the
-warp is that of the landmarks until you refine again.</p>
+with the session. Once a landmark, a drawn curve, a mesh or the penalty changes, it is <b>out of
+date</b>: the warp goes without it until you refine again.</p>
 <p><b>What it does not tell.</b> The distance is what was fitted: a small one proves nothing. That
 the surfaces lie on one another does not mean that the right places do. <b>Check the refinement</b>
 refines again without each landmark in turn and measures how far it is then missed; a few may be

@@ -16,8 +16,8 @@ from pinwarp.session.warp.component_words import applied_in_words
 from pinwarp.session.warp.fingerprint import fingerprint, group_parts, mesh_parts
 
 OUT_OF_DATE = (
-    "The refinement is out of date, since landmarks, a mesh or the penalty have changed: the warp "
-    "is that of the landmarks alone. Refine again."
+    "The refinement is out of date, since landmarks, drawn curves, a mesh or the penalty have "
+    "changed: the warp goes without it. Refine again."
 )
 
 
