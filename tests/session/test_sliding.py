@@ -286,3 +286,16 @@ def test_a_point_that_is_excluded_makes_room_for_one_at_its_place(grouped, finde
     without = edits.exclude_points(twice, "curve_1", [3])
     numbers = [group.numbers.tolist() for group in rest_of(without).semilandmarks.groups]
     assert numbers[1:] == [[0, 1, 2, 4, 5, 6], [3]]
+
+
+def test_a_drag_that_puts_a_refinement_out_of_date_slides_from_its_first_frame(grouped):
+    refined, _ = refined_session(grouped, RefinementOptions(smallest_feature=60.0))
+    solver = WarpSolver()
+    solver.solve(WarpInputs.of(refined))
+    for step in (1.0, 2.0):
+        moved = pushed(refined, "midshaft_anterior", [step, 0.0, 0.0])
+        moving = solver.preview(WarpInputs.of(moved))
+        assert moving.not_sliding is None
+        assert moving.semilandmarks is not None
+    assert solver.slider.slides == 1
+    assert np.abs(moving.vertices - rest_of(moved).vertices).max() < 1.0

@@ -17,7 +17,7 @@ ABOUT = (
     "Draws places all over the source to the destination's surface, large features first, and "
     "slides them on it. Every landmark is met, unless it gets a tolerance."
 )
-NOT_REFINED = "Not refined: the warp is that of the landmarks alone."
+NOT_REFINED = "Not refined yet."
 CANCELLED = "Cancelled: the warp is as it was."
 CHANGED = "Landmarks, drawn curves, a mesh or the penalty changed: the refinement was cancelled."
 CHECK_CHANGED = "Landmarks, drawn curves, a mesh or the penalty changed: the check was cancelled."

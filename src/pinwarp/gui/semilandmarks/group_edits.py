@@ -190,6 +190,8 @@ class GroupEdits:
         one = self._shown().group(name)
         return (
             one is not None
+            # What is still shown of it may be older than the last edit.
+            and one.group == self._editor.committed.group(name)
             and number < len(one.destination)
             and bool(np.isfinite(one.destination[number]).all())
             and not one.is_freed[number]

@@ -196,12 +196,14 @@ class WarpSolver:
             return None, None
         if inputs.refinement is not None:
             return None, FITTED
-        last = self._last
-        if moving and last is not None and last.inputs.sliding is not None:
-            was, now = last.inputs.sliding, inputs.sliding
+        for known in (self._last, self._moving) if moving else ():
+            # Under a refinement nothing had come to rest.
+            if known is None or known.inputs.sliding is None or known.inputs.refinement is not None:
+                continue
+            was, now = known.inputs.sliding, inputs.sliding
             # As long as the same points slide on the same bones they are only held meanwhile.
             if (was.names, was.mesh, was.target) == (now.names, now.mesh, now.target):
-                return last.semilandmarks, last.not_sliding
+                return known.semilandmarks, known.not_sliding
         if not inputs.settings.is_regular:
             return None, (
                 "Semilandmarks slide in the regularising convention only: choose it, or remove "
