@@ -17,7 +17,7 @@ from qtpy.QtWidgets import QApplication
 from tests.gui.monkey.answers import Answers
 from tests.gui.monkey.files import Files
 from tests.gui.monkey.hands import Hands
-from tests.gui.monkey.memory import look_at_everything, megabytes_in_use
+from tests.gui.monkey.memory import megabytes_in_use, warm_up
 from tests.gui.monkey.watch import Events, Watch
 from vtkmodules.vtkCommonCore import vtkObjectBase
 
@@ -149,7 +149,7 @@ class Monkey:
 
     def _warm_up(self) -> None:
         if self._is_long:
-            look_at_everything(self.window, self._settle)
+            warm_up(self.window, self._settle)
 
     def _on_saved(self) -> None:
         editor = self.window.editor
