@@ -36,7 +36,7 @@ LIVE_SIZES = ((100_000, 50), (100_000, 200), (1_000_000, 200), (1_000_000, 1000)
 def solving() -> Iterator[Row]:
     """One solve at penalty 0, from arrays to coefficients."""
     small.warm_up()
-    for count in (10, 20, 50, 100, 200, 1000, 5000):
+    for count in (10, 20, 50, 100, 200, 400, 1000, 5000):
         source, destination = landmark_pairs(count)
         ways = {"pinwarp": lambda s=source, d=destination: solve_coefficients(s, d)}
         for peer in PEERS:
