@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Unpack
 
+from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.session.history import History
 from pinwarp.session.session import Session
@@ -93,6 +95,15 @@ class Editor:
         self._preview = None
         self._history.commit(session, label, merge_key)
         self._announce()
+
+    def attempt(self, edit: Callable[[Session], Session], label: str) -> str:
+        """Commit an edit as one undo step; return in words why it cannot be, else nothing."""
+        try:
+            session = edit(self.committed)
+        except PinwarpError as error:
+            return str(error)
+        self.commit(session, label)
+        return ""
 
     def undo(self) -> None:
         """Take the last step back."""

@@ -8,7 +8,6 @@ from functools import partial
 import numpy as np
 
 from pinwarp.core.curves import PathFinder
-from pinwarp.core.errors import PinwarpError
 from pinwarp.core.groups import Curve
 from pinwarp.core.landmarks import Position, Side, as_position
 from pinwarp.gui.semilandmarks.shown import Shown
@@ -211,13 +210,10 @@ class GroupEdits:
         return new[0] if new else ""
 
     def _try(self, edit: Callable[[Session], Session], label: str) -> bool:
-        try:
-            session = edit(self._editor.committed)
-        except PinwarpError as error:
-            self._say(str(error))
-            return False
-        self._editor.commit(session, label)
-        return True
+        problem = self._editor.attempt(edit, label)
+        if problem:
+            self._say(problem)
+        return not problem
 
 
 def _pinned(

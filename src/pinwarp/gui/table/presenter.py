@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Sequence
 
 from qtpy.QtWidgets import QInputDialog
 
-from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Landmark, Role, Side
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability, Panel
@@ -297,13 +296,10 @@ class TablePresenter(Capability):
             editor.select(*(editor.committed.landmarks[row].name for row in rows))
 
     def _try(self, edit: Callable[[Session], Session], label: str) -> bool:
-        try:
-            session = edit(self._editor.committed)
-        except PinwarpError as error:
-            self._say(str(error))
-            return False
-        self._editor.commit(session, label)
-        return True
+        problem = self._editor.attempt(edit, label)
+        if problem:
+            self._say(problem)
+        return not problem
 
     # States
 
