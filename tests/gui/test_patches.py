@@ -179,3 +179,13 @@ def test_a_patch_asked_of_the_next_bone_while_one_of_the_last_is_spread_is_made(
     assert names(user) == ["patch_1"]
     points = user.session.groups[0].points
     assert SurfaceIndex(mirrored).distances(np.array(points)).max() < 1e-6
+
+
+def test_sides_with_a_patch_are_not_swapped_and_it_is_said_why(user):
+    user.open_sample()
+    user.press(Qt.Key.Key_C, SHIFT)
+    before = user.session
+    assert names(user) == ["patch_1"]
+    user.trigger("swap_sides")
+    assert user.session == before
+    assert said(user).startswith("patch_1 cannot change sides")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 from pinwarp.core.landmarks import Side
@@ -10,6 +11,7 @@ from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
+from pinwarp.session.session import Session
 
 
 class BoneEdits(Capability):
@@ -19,10 +21,13 @@ class BoneEdits(Capability):
     ----------
     editor
         The truth.
+    say
+        Tells what cannot be done, and why.
     """
 
-    def __init__(self, editor: Editor) -> None:
+    def __init__(self, editor: Editor, say: Callable[[str], None]) -> None:
         self._editor = editor
+        self._say = say
         self.actions = (
             Action(
                 "swap_sides",
@@ -51,10 +56,13 @@ class BoneEdits(Capability):
 
     def swap(self) -> None:
         """Warp the other way round."""
-        session = edits.swap_sides(self._editor.committed)
-        self._editor.commit(session, "Swap source and destination")
+        self._try(edits.swap_sides, "Swap source and destination")
 
     def mirror(self, axis: str) -> None:
         """Make a left source a right one."""
-        session = edits.mirror_source(self._editor.committed, axis)
-        self._editor.commit(session, f"Mirror source across {axis}")
+        self._try(partial(edits.mirror_source, axis=axis), f"Mirror source across {axis}")
+
+    def _try(self, edit: Callable[[Session], Session], label: str) -> None:
+        problem = self._editor.attempt(edit, label)
+        if problem:
+            self._say(problem)

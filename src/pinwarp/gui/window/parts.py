@@ -86,7 +86,7 @@ class Parts:
         self.views = ViewControls(editor, views, scenes, frame)
         self.ghosts = Ghosts(editor, self.warps, surfaces)
         self.hand = Hand(editor, views, self.ghosts)
-        self.bones = BoneEdits(editor)
+        self.bones = BoneEdits(editor, say)
         self.guidance = Guidance(editor, self.hand, self.ghosts, tasks)
         self.table = TablePresenter(editor, self.warps, self.hand, dialogs, say)
         self.grid = GridPresenter(editor, self.warps, scenes, frame)
