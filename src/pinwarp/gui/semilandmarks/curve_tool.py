@@ -18,7 +18,7 @@ from pinwarp.core.landmarks import Position, Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui.semilandmarks.view_tool import ENDING, ViewTool, named
 from pinwarp.gui.tasks.jobs import LatestWins
-from pinwarp.gui.views.canvas import Canvas
+from pinwarp.gui.views.canvas import OUTLINE_REACH, Canvas
 from pinwarp.gui.views.viewport import REACH, Viewport
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
@@ -245,7 +245,7 @@ class CurveTool(ViewTool):
         landmark = self._editor.session.landmark(marker.name) if marker is not None else None
         if landmark is not None and landmark.source is not None:
             return Handle(landmark.source, landmark.destination, landmark.name)
-        position = view.pick(at)
+        position = view.pick(at, OUTLINE_REACH)
         return None if position is None else Handle(as_position(position))
 
     def _is_near(self, view: Canvas, at: QPointF, stop: Handle) -> bool:

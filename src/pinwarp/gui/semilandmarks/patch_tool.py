@@ -9,7 +9,7 @@ from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.landmarks import Position, Side, as_position
 from pinwarp.gui.semilandmarks.view_tool import ENDING, ViewTool, named
-from pinwarp.gui.views.canvas import Canvas
+from pinwarp.gui.views.canvas import OUTLINE_REACH, Canvas
 from pinwarp.gui.views.viewport import Viewport
 
 
@@ -51,7 +51,7 @@ class PatchTool(ViewTool):
         """Take the place that was clicked."""
         if twice:
             return
-        position = view.pick(at) if view.side is Side.SOURCE else None
+        position = view.pick(at, OUTLINE_REACH) if view.side is Side.SOURCE else None
         if position is None:
             self.said.emit("A patch is laid over the source: click on it there.")
         else:

@@ -24,7 +24,7 @@ from pinwarp.gui.scene.drawables import Drawable, GridLines, Legend, Motion, Ove
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.scene.sight import through_ball
 from pinwarp.gui.style import theme
-from pinwarp.gui.views.sighted_view import SightedView
+from pinwarp.gui.views.sighted_view import NOWHERE, SightedView
 
 Kind = TypeVar("Kind", bound=Drawable)
 
@@ -32,6 +32,11 @@ Kind = TypeVar("Kind", bound=Drawable)
 SLOW_FRAME = 0.030
 # How near and how far a hand may bring the camera to what it looks at, in diagonals of the bone.
 NEAREST, FURTHEST = 1e-3, 50.0
+# A click this many pixels beside the bone is meant for the bone.
+OUTLINE_REACH = 6
+# How the surface beside a line of sight is found: places looked at first, turns at most, when it
+# has settled (in diagonals of the bone), and how near to the outline (in pixels).
+NEAR_PLACES, TURNS, SETTLED, OUTLINE = 5000, 30, 1e-5, 0.25
 
 
 class Canvas(SightedView):
@@ -209,8 +214,59 @@ class Canvas(SightedView):
         lens = (camera.GetViewAngle(), camera.GetParallelScale(), camera.GetParallelProjection())
         return (pose, lens, self.width(), self.height(), self.surface, share)
 
-    def pick(self, at: QPointF) -> NDArray | None:
-        """Return the position on the surface under a place on the screen, None beside it."""
+    def pick(self, at: QPointF, reach: float = 0.0) -> NDArray | None:
+        """Return the position on the surface under a place on the screen.
+
+        Parameters
+        ----------
+        at
+            The place, in logical pixels.
+        reach
+            Beside the surface the nearest position of it that is seen is taken, up to this many
+            pixels away.
+
+        Returns
+        -------
+        (3,) float64 or None
+            None where there is nothing.
+        """
+        met = self._under(at)
+        return self._beside(at, reach) if met is None and reach else met
+
+    def _beside(self, at: QPointF, reach: float) -> NDArray | None:
+        """Return the seen position of the surface nearest to a line of sight that misses it."""
+        surface, ray = self.surface, self._ray(at)
+        if surface is None or ray is None:
+            return None
+        start, direction = ray
+        points = np.asarray(surface.polydata.points)
+        some = points[:: max(1, len(points) // NEAR_PLACES)]
+        apart = self.project(some) - [at.x(), at.y()]
+        position = np.asarray(some[np.argmin(np.sum(apart**2, axis=1))], dtype=np.float64)
+        for _ in range(TURNS):
+            # From the line to the surface and back: the two come as near as they get.
+            along = max(0.0, float((position - start) @ direction))
+            last, (position, _) = position, surface.closest(start + along * direction)
+            if np.linalg.norm(position - last) < SETTLED * surface.diagonal:
+                break
+        ((x, y),) = self.project(position[None])
+        way = QPointF(x, y) - at
+        length = float(np.hypot(way.x(), way.y()))
+        if length > min(reach, NOWHERE / 2):
+            return None
+        # A line of sight that only touches the outline may miss it by rounding: a little inwards.
+        inwards = 1.0 + 2.0 / max(length, 1e-3)
+        missing, meeting, met = 0.0, inwards, self._under(at + way * inwards)
+        while met is not None and (meeting - missing) * length > OUTLINE:
+            middle = (missing + meeting) / 2
+            there = self._under(at + way * middle)
+            if there is None:
+                missing = middle
+            else:
+                meeting, met = middle, there
+        return met
+
+    def _under(self, at: QPointF) -> NDArray | None:
         ray = self._ray(at)
         if self.surface is None or ray is None:
             return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from qtpy.QtWidgets import QWidget
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.drawn.surfaces import Surfaces
 from pinwarp.gui.scene.drawables import CurveHandle, Marker
-from pinwarp.gui.views.canvas import Canvas
+from pinwarp.gui.views.canvas import OUTLINE_REACH, Canvas
 from pinwarp.gui.views.tool import Tool
 
 # A press released within SLOP pixels is a click; one begun within REACH of a landmark
@@ -126,7 +127,8 @@ class Viewport(Canvas):
             # Off the surface: a femoral head's centre lies inside the bone.
             position: NDArray | None = self.in_view_plane(at, np.array(press.grip.position))
         else:
-            position = self.pick(at)
+            # Crests and tubercles lie on outlines: past one, it stays where it is nearest.
+            position = self.pick(at, math.inf)
         if position is None:
             return
         if isinstance(press.grip, CurveHandle):
@@ -154,7 +156,7 @@ class Viewport(Canvas):
             done.emit(grip.curve, grip.number)
         elif grip is not None:
             (self.landmark_dropped if press.dragging else self.landmark_clicked).emit(grip.name)
-        elif (position := self.pick(press.at)) is not None:
+        elif (position := self.pick(press.at, OUTLINE_REACH)) is not None:
             with_ctrl = bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
             (self.surface_ctrl_clicked if with_ctrl else self.surface_clicked).emit(position)
         else:
@@ -198,7 +200,7 @@ class Viewport(Canvas):
             self.tool.hover(self, at)
         if grip is not None:
             self.setCursor(Qt.CursorShape.PointingHandCursor)
-        elif self.pick(at) is not None:
+        elif self.pick(at, OUTLINE_REACH) is not None:
             self.setCursor(Qt.CursorShape.CrossCursor)
         else:
             self.unsetCursor()
