@@ -108,6 +108,7 @@ def test_a_hostile_camera_harms_nothing_and_home_brings_the_bones_back(sample, l
             place = np.array(sample.session.pairs[0].position(side))
             assert np.isfinite(viewport.in_view_plane(QPointF(40, 30), place)).all()
             viewport.pick(QPointF(40, 30))
+            viewport.pick(QPointF(40, 30), np.inf)
             assert np.isfinite(viewport.project(place[None])).all()
             assert np.isfinite(viewport.pixels_per_unit(place))
             viewport.behind_surface(place[None])

@@ -41,7 +41,7 @@ def ball(user):
 
 @pytest.mark.parametrize(("beside", "places"), [(4, True), (12, False)])
 def test_a_click_just_beside_the_outline_is_meant_for_the_bone(ball, beside, places):
-    user, view, outline = ball
+    user, _, outline = ball
     user.click(SOURCE, (outline + QPointF(beside, 0)).toPoint())
     assert len(user.session.landmarks) == places
     if places:

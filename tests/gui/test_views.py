@@ -165,6 +165,24 @@ def test_home_takes_over_the_pairs_too(turned):
         assert (seen < [viewport.width(), viewport.height()]).all()
 
 
+def test_home_keeps_the_side_that_is_seen_and_shift_home_goes_back_to_the_first(turned):
+    first = {side: pose(turned, side) for side in Side}
+    pair(turned, 4, one_by_one=True)
+    orbit(turned, SOURCE)
+    scroll(turned, SOURCE, 5)
+    seen = {side: pose(turned, side) for side in Side}
+    turned.press(Qt.Key.Key_Home)
+    for side in Side:
+        assert np.allclose(pose(turned, side).frame, seen[side].frame, atol=1e-6)
+        viewport = turned.window.viewports[side]
+        places = viewport.project(turned.session.mesh(side).vertices)
+        assert places.min() > 0
+        assert (places < [viewport.width(), viewport.height()]).all()
+    turned.press(Qt.Key.Key_Home, Qt.KeyboardModifier.ShiftModifier)
+    assert np.allclose(pose(turned, SOURCE).frame, first[SOURCE].frame, atol=1e-6)
+    assert from_the_same_side(turned)
+
+
 def test_pairs_on_one_line_do_not_turn_the_other_bone(turned):
     low, high = turned.session.mesh(SOURCE).bounds
     line = [low + t * (high - low) for t in (0, 0.3, 0.6, 1)]

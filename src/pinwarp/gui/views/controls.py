@@ -123,7 +123,15 @@ class ViewControls(Capability):
                 at="View.21 tools.41",
                 keys="Home",
                 icon="fit",
-                tip="Look at both bones as a whole",
+                tip="Look at both bones as a whole, from the side they are seen from",
+            ),
+            Action(
+                "standard_view",
+                "S&tandard View",
+                self.look_as_at_first,
+                at="View.23",
+                keys="Shift+Home",
+                tip="Look at both bones as when they were opened",
             ),
             Action(
                 "focus",
@@ -140,7 +148,7 @@ class ViewControls(Capability):
                     partial(self.look_from, view),
                     at=f"sides.{place}",
                     keys=str(number),
-                    tip="The side that Fit shows" if view is StandardView.FRONT else "",
+                    tip="The side that is shown first" if view is StandardView.FRONT else "",
                 )
                 for number, (view, (text, place)) in enumerate(_SIDES.items(), 1)
             ),
@@ -221,7 +229,7 @@ class ViewControls(Capability):
         unaligned = surfaces != self._surfaces or (self._pairs < 3 and pairs > self._pairs + 1)
         self._surfaces, self._pairs = surfaces, pairs
         if unaligned and self.pairing_fit() is not None:
-            self.fit_all()
+            self.look_as_at_first()
 
     def _surfaces_now(self) -> list[object]:
         return [view.surface for view in self._views.values()]
@@ -262,9 +270,26 @@ class ViewControls(Capability):
         self._editor.look(link=following)
 
     def fit_all(self) -> None:
-        """Show both bones as a whole; once the pairs tell how, from the same anatomical side."""
+        """Show both bones as a whole, each from where it is seen.
+
+        Once the pairs tell how, the destination is shown from the source's anatomical side.
+        """
+        poses = {side: Pose.of(view.camera) for side, view in self._views.items()}
+        if not all(pose.is_proper for pose in poses.values()):
+            # There is no side to keep.
+            self.look_as_at_first()
+            return
+        frames = {side: pose.frame for side, pose in poses.items()}
+        self._show(frames, self._pairs_turn())
+
+    def look_as_at_first(self) -> None:
+        """Show both bones from the front; once the pairs tell how, from the same side."""
+        self._show_from(StandardView.FRONT, self._pairs_turn())
+
+    def _pairs_turn(self) -> Matrix | None:
+        """Return how the pairs turn the source's sides to the destination's, None where free."""
         fit = self.pairing_fit() if self.link.mode is not LinkMode.FREE else None
-        self._show_from(StandardView.FRONT, fit.rotation if fit is not None else None)
+        return fit.rotation if fit is not None else None
 
     def look_from(self, view: StandardView) -> None:
         """Show both bones from one of the source's six sides."""
@@ -275,6 +300,11 @@ class ViewControls(Capability):
         for side, canvas in self._views.items():
             if canvas.bone is not None:
                 frames[side] = standard_frame(best_frame(canvas.bone.bounds_size), view)
+        self._show(frames, rotation)
+
+    def _show(self, frames: dict[Side, Matrix], rotation: Matrix | None) -> None:
+        """Show both bones as a whole from given sides, or the destination as the source is."""
+        frames = {side: x for side, x in frames.items() if self._views[side].bone is not None}
         if rotation is not None and len(frames) == 2:
             frames[Side.DESTINATION] = rotation @ frames[Side.SOURCE]
         with self.link.on_their_own():
@@ -293,7 +323,7 @@ class ViewControls(Capability):
         """Look at (n, 3) places of one side or of both from nearby."""
         if not all(Pose.of(view.camera).is_proper for view in self._views.values()):
             # There is no side to look from any more.
-            self.fit_all()
+            self.look_as_at_first()
         rotation = self.link.source_to_destination()
         poses = {side: Pose.of(view.camera) for side, view in self._views.items()}
         if rotation is not None:
