@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from qtpy.QtCore import Qt
-from qtpy.QtGui import QIcon, QPalette
+from qtpy.QtGui import QIcon
 from qtpy.QtWidgets import (
     QCheckBox,
     QComboBox,
@@ -88,10 +88,8 @@ class _SizeDialog(QDialog):
 
     def _say(self, words: str, *, possible: bool) -> None:
         self.note.setText(words)
-        self.note.setForegroundRole(
-            QPalette.ColorRole.PlaceholderText if possible else QPalette.ColorRole.WindowText
-        )
-        self.note.setStyleSheet("" if possible else f"color: {theme.WARNING_COLOUR};")
+        colour = theme.quiet_text_colour() if possible else theme.warning_text_colour()
+        self.note.setStyleSheet(f"color: {colour.name()};")
         self.export.setEnabled(possible)
 
 

@@ -32,7 +32,7 @@ class FoldNote(QPushButton):
         self._focus = focus
         self._survey: Survey | None = None
         self.setFlat(True)
-        self.setStyleSheet(f"color: {theme.FOLD_COLOUR};")
+        self.setStyleSheet(f"color: {theme.warning_text_colour().name()};")
         self.setToolTip(
             "The warp turns the surface inside out there: click to select these landmarks"
         )

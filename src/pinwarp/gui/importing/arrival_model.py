@@ -107,5 +107,5 @@ class ArrivalModel(QAbstractTableModel):
 def _colour(fate: Fate) -> QColor | None:
     """Return a colour for what deserves a look; the words say the same."""
     if fate is Fate.REPLACES:
-        return QColor(theme.WARNING_COLOUR)
+        return theme.warning_text_colour()
     return theme.quiet_text_colour() if fate is Fate.SAME else None

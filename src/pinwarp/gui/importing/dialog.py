@@ -297,7 +297,5 @@ def _label(text: str, *, bold: bool = False, quiet: bool = False) -> QLabel:
         font.setBold(True)
         label.setFont(font)
     if quiet:
-        palette = label.palette()
-        palette.setColor(label.foregroundRole(), theme.quiet_text_colour())
-        label.setPalette(palette)
+        theme.make_quiet(label)
     return label

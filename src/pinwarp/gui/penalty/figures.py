@@ -91,7 +91,7 @@ class Notes(QLabel):
         words = [
             f'<span style="color: {colour}">{html.escape(text, quote=False)}</span>'
             for text, colour in (
-                (warnings, theme.WARNING_COLOUR),
+                (warnings, theme.warning_text_colour().name()),
                 (advice, theme.quiet_text_colour().name()),
             )
             if text

@@ -117,7 +117,6 @@ class PenaltyPanel(QWidget):
         # What stands at the curves' ends takes more room than the ends of the slider.
         for text, reserved in (("Interpolates", "Interpolates"), ("Affine", "Leave-one-out")):
             label = QLabel(text)
-            label.setEnabled(False)
             label.setFixedWidth(self.fontMetrics().horizontalAdvance(reserved) + 4)
             slider.addWidget(label)
         slider.insertWidget(1, self.slider, 1)

@@ -76,14 +76,8 @@ class RefiningPanel(QScrollArea):
         )
         self.turned = QCheckBox("One mesh is inside out: take it the other way round")
         self.refine = QPushButton()
-        palette = self.refine.palette()
-        for group in (QPalette.ColorGroup.Active, QPalette.ColorGroup.Inactive):
-            for role, like in (
-                (QPalette.ColorRole.Button, QPalette.ColorRole.Highlight),
-                (QPalette.ColorRole.ButtonText, QPalette.ColorRole.HighlightedText),
-            ):
-                palette.setColor(group, role, palette.color(group, like))
-        self.refine.setPalette(palette)
+        # The window's sheet makes it stand out.
+        self.refine.setProperty("primary", True)
         self.refine.setToolTip(f"Fit the warp to the whole surface ({refine_key})")
         self.bar = QProgressBar()
         self.bar.setRange(0, 100)
@@ -107,7 +101,7 @@ class RefiningPanel(QScrollArea):
 
     def _lay_out(self) -> None:
         about = _words(ABOUT)
-        about.setForegroundRole(QPalette.ColorRole.PlaceholderText)
+        theme.make_quiet(about)
         self._choices = QWidget()
         choices = QVBoxLayout(self._choices)
         choices.setContentsMargins(0, 0, 0, 0)
@@ -294,5 +288,5 @@ def _button(action: Action) -> QToolButton:
 def _colour(label: QLabel, is_warning: bool) -> None:
     palette = QPalette()
     if is_warning:
-        palette.setColor(QPalette.ColorRole.WindowText, theme.WARNING_COLOUR)
+        palette.setColor(QPalette.ColorRole.WindowText, theme.warning_text_colour())
     label.setPalette(palette)

@@ -11,7 +11,7 @@ from pinwarp.gui.tasks.jobs import SlowJob
 
 # So long a level stands at least (ms), and so long the worker waits for a window that is busy (s).
 SHOWN_MS = 60
-PATIENCE = 2.0
+PATIENCE = 10.0
 _LOOK = 0.05
 
 

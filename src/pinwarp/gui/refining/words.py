@@ -126,7 +126,7 @@ def worth_as_html(worth: Verification, unit: str) -> str:
 def _row(cells: tuple[str, ...], tag: str, *, worse: bool = False) -> str:
     name, *numbers = (html.escape(cell).replace(" ", "&nbsp;") for cell in cells)
     # Not by colour alone: a sign as well.
-    colour = f' style="color:{theme.WARNING_COLOUR}"' if worse else ""
+    colour = f' style="color:{theme.warning_text_colour().name()}"' if worse else ""
     right = [f'<{tag} align="right" style="padding-left:18px">{x}</{tag}>' for x in numbers]
     sign = f"<td{colour}>&nbsp;{'worse' if worse else ''}</td>"
     return f'<tr><{tag} align="left">{name}</{tag}>{"".join(right)}{sign}</tr>'

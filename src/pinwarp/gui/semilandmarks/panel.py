@@ -156,7 +156,7 @@ class SemilandmarkPanel(QWidget):
             label.setTextFormat(Qt.TextFormat.PlainText)
             label.setWordWrap(True)
             label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Minimum)
-        self.problem.setStyleSheet(f"color: {theme.WARNING_COLOUR};")
+        self.problem.setStyleSheet(f"color: {theme.warning_text_colour().name()};")
         self.problem.hide()
         freed = QHBoxLayout()
         freed.addWidget(self.freed, 1)

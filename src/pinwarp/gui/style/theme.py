@@ -7,6 +7,7 @@ every state has its own shape as well.
 from __future__ import annotations
 
 from qtpy.QtGui import QColor, QGuiApplication, QPalette
+from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.landmarks import LandmarkState
 
@@ -17,7 +18,7 @@ OVERLAY_COLOUR = "#3f8fd2"  # translucent blue
 BACKGROUND_BOTTOM = "#e3e7eb"
 BACKGROUND_TOP = "#f8f9fb"
 INK = "#2b2f36"
-QUIET_INK = "#6c7480"
+QUIET_INK = "#59616c"
 OUTLINE = "#20242b"
 PAPER = "#ffffff"
 
@@ -89,7 +90,19 @@ def selected_text_colour() -> QColor:
 
 def quiet_text_colour() -> QColor:
     """Return the colour of text on the window that need not be read."""
-    return QColor("#a4abb5") if is_dark() else QColor(QUIET_INK)
+    return QColor("#b3bac4") if is_dark() else QColor(QUIET_INK)
+
+
+def warning_text_colour() -> QColor:
+    """Return the colour of words that warn: as dark, or as light, as words have to be."""
+    return QColor("#ff9a52") if is_dark() else QColor("#a84800")
+
+
+def make_quiet(label: QWidget) -> None:
+    """Write a label in the colour of what need not be read."""
+    palette = label.palette()
+    palette.setColor(label.foregroundRole(), quiet_text_colour())
+    label.setPalette(palette)
 
 
 def leave_one_out_colour() -> QColor:

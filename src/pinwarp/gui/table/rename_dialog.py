@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 
 from qtpy.QtCore import QSize, Qt
-from qtpy.QtGui import QBrush, QColor, QIcon, QPalette
+from qtpy.QtGui import QBrush, QIcon
 from qtpy.QtWidgets import (
     QDialog,
     QDialogButtonBox,
@@ -83,7 +83,7 @@ class RenameDialog(QDialog):
         form.addRow("&Pattern", self.pattern)
         form.addRow("&First number", self.first)
         hint = QLabel("{name} is the name as it is, {n} counts, {n:02} with two digits")
-        hint.setForegroundRole(QPalette.ColorRole.PlaceholderText)
+        theme.make_quiet(hint)
         hint.setWordWrap(True)
         form.addRow(hint)
         form = QFormLayout(by_text)
@@ -128,11 +128,13 @@ class RenameDialog(QDialog):
         changed = {a: b for a, b in wanted.items() if a != b}
         self.new_names = {} if problem else changed
         self.problem.setText(problem)
-        self.problem.setStyleSheet(f"color: {theme.WARNING_COLOUR};" if problem else "")
+        self.problem.setStyleSheet(
+            f"color: {theme.warning_text_colour().name()};" if problem else ""
+        )
         self.buttons.button(QDialogButtonBox.StandardButton.Ok).setEnabled(bool(self.new_names))
         doubled = {name for name, times in Counter(wanted.values()).items() if times > 1}
         for i, name in enumerate(self._names):
             item, new_name = self.preview.topLevelItem(i), wanted.get(name, "")
             item.setText(1, new_name)
             wrong = new_name in doubled or bool(problem and f" {new_name}:" in problem)
-            item.setForeground(1, QBrush(QColor(theme.WARNING_COLOUR)) if wrong else QBrush())
+            item.setForeground(1, QBrush(theme.warning_text_colour()) if wrong else QBrush())

@@ -26,7 +26,7 @@ from pinwarp.session.view import Selection
 __all__ = ["LandmarkModel", "LandmarkTable"]
 
 _NAME, _LOCKED = column_number(NAME), column_number(LOCKED)
-_LEAST_NAME_WIDTH = 150
+_LEAST_NAME_WIDTH = 96
 _SIGN = 16
 _EMPTY_HINT = "Click the same place\non both bones"
 
@@ -111,10 +111,14 @@ class LandmarkTable(QTableView):
         self._fit_columns()
 
     def _fit_columns(self) -> None:
-        """Give each column room for its title with the arrow, and for what it usually says."""
+        """Give each column room for its title and for what it usually says; names have the rest.
+
+        The arrow of the order takes its room only in the column that is sorted by.
+        """
         header = self.horizontalHeader()
-        arrow = self.style().pixelMetric(QStyle.PixelMetric.PM_HeaderMarkSize, None, header)
+        mark = self.style().pixelMetric(QStyle.PixelMetric.PM_HeaderMarkSize, None, header)
         margin = self.style().pixelMetric(QStyle.PixelMetric.PM_HeaderMargin, None, header)
+        sorted_by = header.sortIndicatorSection()
         self._fitting = True
         for number, column in enumerate(COLUMNS):
             if number != _NAME and not self.isColumnHidden(number):
@@ -122,7 +126,8 @@ class LandmarkTable(QTableView):
                 title = max(_width(header, line) for line in lines) or _SIGN
                 sign = _SIGN if column.is_numeric and column.icon is not None else 0
                 cell = sign + _width(self, column.widest) + 12
-                header.resizeSection(number, max(title + arrow + 3 * margin, cell))
+                arrow = mark + margin if number == sorted_by else 0
+                header.resizeSection(number, max(title + arrow + 2 * margin, cell))
         self._fitting = False
         self._fit_name()
 
@@ -162,6 +167,7 @@ class LandmarkTable(QTableView):
     def _on_order(self) -> None:
         # A place between sorted rows means nothing to the session.
         self.setDragEnabled(self.order.is_original)
+        self._fit_columns()
         self.viewport().update()
 
     # Selection

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from qtpy.QtCore import QRectF, QSize, Qt, Signal
-from qtpy.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QPalette
+from qtpy.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent
 from qtpy.QtWidgets import (
     QButtonGroup,
     QGridLayout,
@@ -70,7 +70,7 @@ class ComponentRow(QWidget):
         super().__init__()
         self.button = QRadioButton(title)
         self.meaning = QLabel(meaning)
-        self.meaning.setForegroundRole(QPalette.ColorRole.PlaceholderText)
+        theme.make_quiet(self.meaning)
         self.bar = ShareBar()
         self.rms = QLabel()
         self.rms.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)

@@ -6,9 +6,10 @@ import html
 from collections.abc import Sequence
 
 from qtpy.QtCore import QEvent, Qt, Signal
-from qtpy.QtGui import QColor, QKeyEvent, QKeySequence, QPalette
+from qtpy.QtGui import QColor, QKeyEvent, QKeySequence
 from qtpy.QtWidgets import QLabel, QToolTip
 
+from pinwarp.gui.style import theme
 from pinwarp.session.judging.warp_figures import Figure, FigureRow
 
 _ACROSS = 3
@@ -43,7 +44,7 @@ class FiguresView(QLabel):
             self.setText(self._table())
 
     def _table(self) -> str:
-        quiet = self.palette().color(QPalette.ColorRole.PlaceholderText)
+        quiet = theme.quiet_text_colour()
         quiet_name = quiet.name(QColor.NameFormat.HexArgb)
         lines = []
         self._lines = []

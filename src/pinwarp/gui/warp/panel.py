@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from qtpy.QtCore import QSize, Qt, Signal
-from qtpy.QtGui import QPalette
 from qtpy.QtWidgets import (
     QComboBox,
     QFrame,
@@ -86,7 +85,7 @@ class WarpPanel(QScrollArea):
         self.copy.setToolTip("All figures as a table for a spreadsheet")
         self.sentence = QLabel()
         self.sentence.setWordWrap(True)
-        self.sentence.setForegroundRole(QPalette.ColorRole.PlaceholderText)
+        theme.make_quiet(self.sentence)
         self._lay_out()
         self._connect()
 
@@ -96,7 +95,7 @@ class WarpPanel(QScrollArea):
         column.setContentsMargins(12, 4, 12, 8)
         column.setSpacing(6)
         left = QLabel("RMS left")
-        left.setForegroundRole(QPalette.ColorRole.PlaceholderText)
+        theme.make_quiet(left)
         left.setToolTip(
             "How far each leaves the pairs apart: the root mean square of the misses "
             "(without pose: once its pose is put back)"
@@ -112,7 +111,7 @@ class WarpPanel(QScrollArea):
         ends = QHBoxLayout()
         ends.setContentsMargins(self.play.sizeHint().width() + 4, 0, 0, 0)
         for label in self.ends:
-            label.setForegroundRole(QPalette.ColorRole.PlaceholderText)
+            theme.make_quiet(label)
         ends.addWidget(self.ends[0])
         ends.addStretch()
         ends.addWidget(self.ends[1])

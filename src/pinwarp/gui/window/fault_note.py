@@ -41,7 +41,7 @@ class FaultNote(QPushButton):
         self._graphics = graphics
         self._say = say
         self.setFlat(True)
-        self.setStyleSheet(f"color: {theme.FOLD_COLOUR};")
+        self.setStyleSheet(f"color: {theme.warning_text_colour().name()};")
         self.setToolTip("Copies versions and what went wrong, to be pasted into a report")
         self.hide()
         faults.told.connect(self._on_told)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
-from qtpy.QtCore import QByteArray, QSettings, QSize, Qt
-from qtpy.QtGui import QAction
+from qtpy.QtCore import QByteArray, QEvent, QSettings, QSize, Qt, QTimer
+from qtpy.QtGui import QAction, QShowEvent
 from qtpy.QtWidgets import (
+    QApplication,
     QDockWidget,
     QLabel,
     QMainWindow,
@@ -23,6 +25,7 @@ from pinwarp.gui.capability.action import placed
 from pinwarp.gui.capability.capability import RIGHT, Capability, Panel
 from pinwarp.gui.drawn.surfaces import Surfaces
 from pinwarp.gui.style.icons import icon
+from pinwarp.gui.style.sheet import window_sheet
 from pinwarp.gui.tasks.jobs import SlowJob
 from pinwarp.gui.tasks.progress import JobProgress
 from pinwarp.gui.tasks.stepped_job import SteppedJob
@@ -34,6 +37,18 @@ from pinwarp.gui.window.shortcut_overlay import ShortcutOverlay
 
 # How long a message stands in the status bar.
 MESSAGE_MS = 6000
+# As large as a window opens where the screen has room.
+SIZE = QSize(1280, 800)
+# When, after it was shown, it is looked at whether it is on the screen as a whole.
+FRAME_KNOWN_MS = (0, 100, 500)
+
+
+def _show_title(dock: QDockWidget, shown: bool) -> None:
+    """Show the title bar of a dock, or leave its title to its tab."""
+    own = dock.titleBarWidget()
+    dock.setTitleBarWidget(None if shown else QWidget(dock))
+    if own is not None:
+        own.deleteLater()
 
 
 class WindowFrame(QMainWindow):
@@ -60,7 +75,9 @@ class WindowFrame(QMainWindow):
         self.shortcuts: ShortcutOverlay | None = None
         self._fitted: list[QDockWidget] = []
         self.setWindowIcon(icon("pinwarp"))
-        self.resize(1280, 800)
+        self.resize(SIZE)
+        self._was_placed = False
+        self._dress()
 
     def furnish(self, capabilities: Sequence[Capability], actions: Sequence[QAction]) -> None:
         """Give each capability its places, and actions theirs.
@@ -128,6 +145,9 @@ class WindowFrame(QMainWindow):
                 if right:
                     self.tabifyDockWidget(right[-1], dock)
                 right.append(dock)
+                # Its tab says its title; a window of its own has a title bar again.
+                dock.setTitleBarWidget(QWidget(dock))
+                dock.topLevelChanged.connect(partial(_show_title, dock))
             if panel.height_changed is not None:
                 panel.height_changed.connect(lambda dock=dock: self._fit_dock(dock))
                 self._fitted.append(dock)
@@ -150,6 +170,39 @@ class WindowFrame(QMainWindow):
             if widget.layout() is not None:
                 widget.layout().activate()
         self.resizeDocks([dock], [1], Qt.Orientation.Vertical)
+
+    def showEvent(self, event: QShowEvent) -> None:
+        """Begin on the screen as a whole: the status bar tells what to do."""
+        super().showEvent(event)
+        if not self._was_placed:
+            self._was_placed = True
+            # What frame the system draws around it is told some time after.
+            for delay in FRAME_KNOWN_MS:
+                QTimer.singleShot(delay, self, self.keep_on_screen)
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Follow the theme."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.ApplicationPaletteChange:
+            self._dress()
+
+    def _dress(self) -> None:
+        sheet = window_sheet(QApplication.palette())
+        if sheet != self.styleSheet():
+            self.setStyleSheet(sheet)
+
+    def keep_on_screen(self) -> None:
+        """Make the window small enough for the screen, its frame counted, and move it onto it."""
+        if self.isMaximized() or self.isFullScreen():
+            return
+        room, frame = self.screen().availableGeometry(), self.frameGeometry()
+        around = frame.size() - self.size()
+        self.resize(self.size().boundedTo(room.size() - around))
+        frame = self.frameGeometry()
+        self.move(
+            max(room.left(), min(frame.left(), room.right() + 1 - frame.width())),
+            max(room.top(), min(frame.top(), room.bottom() + 1 - frame.height())),
+        )
 
     def toggle_shortcuts(self) -> None:
         """Show the sheet of all keys and gestures, or take it away."""

@@ -1,0 +1,164 @@
+"""Both themes, measured on pictures: what there is to read and to press can be seen."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from qtpy.QtCore import Qt
+from qtpy.QtGui import QColor, QImage, QPalette
+from qtpy.QtWidgets import (
+    QAbstractButton,
+    QCheckBox,
+    QDockWidget,
+    QLabel,
+    QPushButton,
+    QRadioButton,
+    QSlider,
+    QStyle,
+    QStyleOptionSlider,
+    QToolButton,
+    QWidget,
+)
+
+# Of text, and of what is pressed or moved, against what is around (WCAG 2.2, 1.4.3 and 1.4.11).
+READABLE, VISIBLE = 4.5, 3.0
+WITH_WORDS = (QLabel, QAbstractButton)
+DARK = {
+    QPalette.ColorRole.Window: "#2b2b2b",
+    QPalette.ColorRole.WindowText: "#dddddd",
+    QPalette.ColorRole.Base: "#1e1e1e",
+    QPalette.ColorRole.AlternateBase: "#262626",
+    QPalette.ColorRole.Text: "#dddddd",
+    QPalette.ColorRole.Button: "#333333",
+    QPalette.ColorRole.ButtonText: "#dddddd",
+    QPalette.ColorRole.Highlight: "#2a6fb0",
+    QPalette.ColorRole.HighlightedText: "#ffffff",
+    QPalette.ColorRole.PlaceholderText: "#9a9a9a",
+}
+
+
+def dark_palette() -> QPalette:
+    palette = QPalette()
+    for role, colour in DARK.items():
+        palette.setColor(role, QColor(colour))
+    return palette
+
+
+@pytest.fixture(params=["light", "dark"])
+def theme(request, qapp):
+    """The name of a theme that windows made from now on have."""
+    before = qapp.palette()
+    if request.param == "dark":
+        qapp.setPalette(dark_palette())
+    yield request.param
+    qapp.setPalette(before)
+
+
+@pytest.fixture
+def sample(theme, request):
+    user = request.getfixturevalue("user")
+    user.open_sample()
+    return user
+
+
+def pixels(widget: QWidget) -> np.ndarray:
+    """(h, w, 3) colours of a widget as it is painted in its window, from 0 to 1."""
+    top = widget.window()
+    rect = widget.rect().translated(widget.mapTo(top, widget.rect().topLeft()))
+    image = top.grab(rect).toImage().convertToFormat(QImage.Format.Format_RGB888)
+    data = np.frombuffer(image.constBits(), np.uint8)
+    rows = data.reshape(image.height(), image.bytesPerLine())[:, : 3 * image.width()]
+    return rows.reshape(image.height(), image.width(), 3) / 255
+
+
+def luminances(colours: np.ndarray) -> np.ndarray:
+    """Relative luminances, as WCAG defines them."""
+    linear = np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
+    return linear @ [0.2126, 0.7152, 0.0722]
+
+
+def contrast(one: float, other: float) -> float:
+    low, high = sorted((float(one), float(other)))
+    return (high + 0.05) / (low + 0.05)
+
+
+def greatest_contrast(colours: np.ndarray) -> float:
+    """Of anything in a picture against its most common colour."""
+    flat = colours.reshape(-1, 3)
+    kinds, counts = np.unique(np.round(flat * 255), axis=0, return_counts=True)
+    around = luminances(kinds[np.argmax(counts)] / 255)
+    return max(contrast(value, around) for value in luminances(kinds / 255))
+
+
+def shown(window: QWidget, kind: type) -> list:
+    return [
+        widget
+        for widget in window.findChildren(kind)
+        if widget.isVisible() and widget.isEnabled() and not widget.visibleRegion().isEmpty()
+    ]
+
+
+def test_all_words_can_be_read(sample):
+    pale = {}
+    for dock in sample.window.findChildren(QDockWidget):
+        dock.raise_()
+        sample.settle()
+        for label in (word for kind in WITH_WORDS for word in shown(sample.window, kind)):
+            if label.text().strip() and min(label.width(), label.height()) > 5:
+                measured = greatest_contrast(pixels(label))
+                if measured < READABLE:
+                    pale[label.text()] = measured
+    assert pale == {}
+
+
+def test_the_handle_of_every_slider_stands_out_from_its_groove(sample):
+    sample.press(Qt.Key.Key_X)
+    sliders = shown(sample.window, QSlider)
+    assert len(sliders) >= 3
+    for slider in sliders:
+        slider.setValue((slider.minimum() + slider.maximum()) // 2)
+        option = QStyleOptionSlider()
+        slider.initStyleOption(option)
+        handle = slider.style().subControlRect(
+            QStyle.ComplexControl.CC_Slider, option, QStyle.SubControl.SC_SliderHandle, slider
+        )
+        # From the handle's middle outwards: some part of it is unlike what is around.
+        row = pixels(slider)[handle.center().y()]
+        values = luminances(row[max(0, handle.left() - 2) : handle.right() + 3])
+        around = luminances(pixels(slider)[0, 0])
+        assert max(contrast(value, around) for value in values) >= VISIBLE, slider.accessibleName()
+
+
+@pytest.mark.parametrize("kind", [QCheckBox, QRadioButton])
+def test_ticks_and_dots_are_seen_and_so_are_empty_boxes(sample, kind):
+    button = kind("", sample.window)
+    button.setGeometry(100, 300, 40, 30)
+    button.setAutoFillBackground(True)
+    button.show()
+    pictures = []
+    for checked in (False, True):
+        button.setChecked(checked)
+        picture = pixels(button)
+        pictures.append(luminances(picture))
+        assert greatest_contrast(picture) >= VISIBLE
+    differences = [
+        contrast(off, on) for off, on in zip(*(x.ravel() for x in pictures), strict=True)
+    ]
+    assert max(differences) >= VISIBLE
+    button.setParent(None)
+    button.deleteLater()
+
+
+@pytest.mark.parametrize("kind", [QToolButton, QPushButton])
+def test_a_pressed_in_button_is_unlike_one_that_is_not(sample, kind):
+    button = kind(sample.window)
+    button.setCheckable(True)
+    button.setGeometry(100, 300, 60, 30)
+    button.show()
+    values = []
+    for checked in (False, True):
+        button.setChecked(checked)
+        values.append(np.median(luminances(pixels(button))))
+    assert contrast(*values) >= 1.2
+    button.setParent(None)
+    button.deleteLater()
