@@ -6,9 +6,13 @@ import pytest
 from qtpy.QtCore import QPoint, QRect, QSettings, Qt
 from qtpy.QtTest import QTest
 from qtpy.QtWidgets import QDockWidget
-from tests.gui.conftest import close_window
+from tests.gui.conftest import Driver, close_window, open_window
 
+from pinwarp.core.findings import FindingKind
+from pinwarp.core.landmarks import Side
+from pinwarp.gui.files.file_dialogs import Answer
 from pinwarp.gui.window.main_window import MainWindow
+from pinwarp.session.session import Session
 
 
 @pytest.fixture
@@ -67,3 +71,80 @@ def test_names_have_the_width_that_figures_leave_them_and_all_is_seen_in_a_small
     user.window.resize(1024, 580)
     user.settle()
     assert table.horizontalScrollBar().maximum() == 0
+
+
+def test_new_and_close_leave_an_empty_window_and_ask_about_unsaved_work(user):
+    user.open_sample()
+    user.press(Qt.Key.Key_W, Qt.KeyboardModifier.ControlModifier)
+    assert user.session == Session()
+    assert user.dialogs.unsaved_questions == 0, "nothing was unsaved"
+    user.open_sample()
+    user.click(Side.SOURCE, user.free_place(Side.SOURCE))
+    worked = user.session
+    user.dialogs.unsaved = Answer.CANCEL
+    user.press(Qt.Key.Key_N, Qt.KeyboardModifier.ControlModifier)
+    assert user.session == worked
+    user.dialogs.unsaved = Answer.DISCARD
+    user.press(Qt.Key.Key_N, Qt.KeyboardModifier.ControlModifier)
+    assert user.session == Session()
+    assert user.editor.undo_label is None
+    assert not user.window.isWindowModified()
+
+
+def test_the_layout_goes_back_to_what_it_was_at_first(user):
+    docks = {dock.objectName(): dock for dock in user.window.findChildren(QDockWidget)}
+    before = {name: dock.geometry() for name, dock in docks.items() if not dock.isHidden()}
+    docks["landmarks"].setFloating(True)
+    docks["penalty"].close()
+    user.window.addDockWidget(Qt.DockWidgetArea.LeftDockWidgetArea, docks["map"])
+    user.settle()
+    user.trigger("reset_layout")
+    after = {name: dock.geometry() for name, dock in docks.items() if not dock.isHidden()}
+    assert after.keys() == before.keys()
+    for name in ("landmarks", "penalty"):
+        assert docks[name].isVisible()
+        assert after[name] == before[name]
+
+
+def test_the_order_of_the_table_and_its_coordinates_are_there_the_next_time(
+    nothing_leaks, qtbot, dialogs, tmp_path, state_folder
+):
+    window = open_window(dialogs, tmp_path, state_folder)
+    user = Driver(window, dialogs, qtbot)
+    user.open_sample()
+    header = window.parts.table.table.horizontalHeader()
+    at = QPoint(header.sectionViewportPosition(0) + 10, header.height() // 2)
+    for _ in range(2):
+        QTest.mouseClick(header.viewport(), Qt.MouseButton.LeftButton, pos=at)
+    user.trigger("show_coordinates")
+    close_window(window, dialogs)
+    window = open_window(dialogs, tmp_path, state_folder)
+    table = window.parts.table.table
+    assert table.shows_coordinates
+    assert window.actions_by_key["show_coordinates"].isChecked()
+    assert table.horizontalHeader().sortIndicatorSection() == 0
+    assert table.horizontalHeader().sortIndicatorOrder() is Qt.SortOrder.DescendingOrder
+    close_window(window, dialogs)
+
+
+def test_k_says_how_the_cameras_move_now(user):
+    user.open_sample()
+    user.press(Qt.Key.Key_K)
+    assert "rotation only" in user.window.statusBar().currentMessage()
+
+
+def test_no_penalty_is_suggested_while_a_swap_stands_in_the_list(user):
+    user.open_sample()
+    panel, take = user.window.parts.penalty.panel, user.window.actions_by_key["take_suggested"]
+    names = ("midshaft_linea_aspera", "medial_epicondyle")
+    user.editor.select(*names)
+    user.trigger("swap_destinations")
+    kinds = {found.kind for found in user.window.parts.quality.quality.findings}
+    assert FindingKind.SWAPPED in kinds
+    assert not take.isEnabled()
+    assert not panel.suggested.isEnabled()
+    assert panel.suggested.text() == "Suggested: settle first"
+    assert "exchanged" in panel.suggested.toolTip()
+    before = user.session
+    user.press(Qt.Key.Key_T)
+    assert user.session == before

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-from qtpy.QtCore import Qt
+from qtpy.QtCore import QSettings, Qt
 from qtpy.QtGui import QAction
 from qtpy.QtWidgets import QMenu, QWidget
 
@@ -73,6 +73,12 @@ class Capability:
     def drawables(self, _side: Side) -> Iterable[Drawable]:
         """Return what it adds to the scene of a side."""
         return ()
+
+    def remember(self, settings: QSettings) -> None:
+        """Note how it is looked at, for the next time."""
+
+    def recall(self, settings: QSettings) -> None:
+        """Look as it was remembered."""
 
     def shut_down(self) -> None:
         """Let go of workers, graphics and the editor: the window is about to close."""

@@ -128,7 +128,24 @@ class Documents(Capability):
                 icon="open",
                 tip="Open a saved session",
             ),
+            Action(
+                "new_session",
+                "&New Session",
+                self.close_session,
+                at="File.20",
+                keys="Ctrl+N",
+                tip="Begin with nothing, in this window",
+            ),
             placed(self.recent_menu.menuAction(), "File.22"),
+            Action(
+                "close_session",
+                "&Close Session",
+                self.close_session,
+                at="File.33",
+                keys="Ctrl+W",
+                tip="Put everything away; what is unsaved is asked about",
+                possible=lambda: editor.committed != Session() or editor.path is not None,
+            ),
             Action(
                 "open_sample",
                 "Open Sample &Bones",
@@ -151,6 +168,11 @@ class Documents(Capability):
         """Open the sample bones as a new session, asking about unsaved work first."""
         if self._saving.may_lose_changes():
             self.open_session(sample_session(), as_new=True)
+
+    def close_session(self) -> None:
+        """Leave an empty window, asking about unsaved work first."""
+        if self._saving.may_lose_changes():
+            self._editor.replace_all(Session(), None)
 
     def _fill_recent(self) -> None:
         self.recent_menu.clear()

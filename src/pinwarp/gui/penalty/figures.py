@@ -139,8 +139,6 @@ def warnings_of(session: Session, result: WarpResult | None) -> str:
             for finding in result.spline.findings
             if all(row < len(names) for row in finding.rows)
         ]
-        if not has_modes:
-            notes.append("The penalty acts from five pairs on.")
     if session.settings.convention is PenaltyConvention.OPYNSIM and has_modes and not notes:
         notes.append(
             "OPynSim's published equation has poles (the ticks): the warp overshoots before "

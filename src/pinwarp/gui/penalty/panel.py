@@ -20,6 +20,7 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.factor import SourceFactor
+from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import Side
 from pinwarp.core.quality import PenaltyCurve
 from pinwarp.core.spline import PenaltyConvention
@@ -45,6 +46,12 @@ _CONVENTIONS = {
     PenaltyConvention.OPYNSIM: "OPynSim (published)",
 }
 _NO_CURVE = "From five pairs on, leave-one-out error and residual are drawn here."
+_TOO_FEW = "The penalty acts from five pairs on."
+_WAITS = "Suggested: settle first"
+_WAITS_FOR = {
+    FindingKind.SWAPPED: "two landmarks seem to be exchanged",
+    FindingKind.MIRRORED: "one of the two sets seems to be mirrored",
+}
 _NO_SUGGESTION = "With semilandmarks no penalty is suggested."
 _OTHER_CONVENTION = "The curve and its suggestion are of the regularising convention."
 
@@ -244,6 +251,9 @@ class PenaltyPanel(QWidget):
         advice = penalty_advice(curve) if curve is not None else ""
         if curve is not None and self._session.settings.convention is PenaltyConvention.OPYNSIM:
             advice = ""
+        has_modes = self._factor is not None and len(self._factor.poles) > 0
+        if self._result is not None and self._result.spline is not None and not has_modes:
+            advice = _TOO_FEW
         self.warning.show_words(warnings_of(self._session, self._result), advice)
 
     def _show_suggestion(self) -> None:
@@ -256,6 +266,8 @@ class PenaltyPanel(QWidget):
             length = format_length(penalty, self._session.unit, 3)
             words = f"At suggested: {length}" if there else f"Use suggested: {length}"
             tip = "The penalty with the least leave-one-out error (T)"
+        elif self._waits_for:
+            words, tip = _WAITS, f"No penalty is suggested while {self._waits_for}: see the list."
         elif curve is not None and curve.suggested is not None:
             tip = _OTHER_CONVENTION
         self.suggested.setText(words)
@@ -320,12 +332,18 @@ class PenaltyPanel(QWidget):
     @property
     def suggestion(self) -> float | None:
         """The penalty that may be taken in one go, if the pairs suggest one."""
-        if (
-            self._curve is None
-            or self._session.settings.convention is not PenaltyConvention.REGULARISING
-        ):
+        regular = self._session.settings.convention is PenaltyConvention.REGULARISING
+        if self._curve is None or self._waits_for or not regular:
             return None
         return self._curve.suggested
+
+    @property
+    def _waits_for(self) -> str:
+        """What is to be settled before a penalty can be suggested: it would smooth that over."""
+        if self._curve is None or self._quality is None or self._curve.suggested is None:
+            return ""
+        kinds = [finding.kind for finding in self._quality.findings]
+        return next((words for kind, words in _WAITS_FOR.items() if kind in kinds), "")
 
     def take_suggested(self) -> None:
         """Ask for the suggested penalty."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 
+from qtpy.QtCore import QSettings
 from qtpy.QtWidgets import QInputDialog
 
 from pinwarp.core.landmarks import Landmark, Role, Side
@@ -204,6 +205,14 @@ class TablePresenter(Capability):
                 tip="In the table, to edit",
             ),
         )
+
+    def remember(self, settings: QSettings) -> None:
+        """Note how the table is looked at."""
+        self.table.remember(settings)
+
+    def recall(self, settings: QSettings) -> None:
+        """Look at the table as it was remembered."""
+        self.table.recall(settings)
 
     def shut_down(self) -> None:
         """Let go of the editor."""

@@ -9,6 +9,7 @@ from qtpy.QtCore import (
     QModelIndex,
     QPoint,
     QRect,
+    QSettings,
     Qt,
     QTimer,
     Signal,
@@ -169,6 +170,27 @@ class LandmarkTable(QTableView):
         self.setDragEnabled(self.order.is_original)
         self._fit_columns()
         self.viewport().update()
+
+    def remember(self, settings: QSettings) -> None:
+        """Note the order of the rows, and whether coordinates are shown."""
+        header = self.horizontalHeader()
+        number = header.sortIndicatorSection()
+        key = COLUMNS[number].key if 0 <= number < len(COLUMNS) else ""
+        settings.setValue("table/sorted_by", key)
+        settings.setValue(
+            "table/descending", header.sortIndicatorOrder() is Qt.SortOrder.DescendingOrder
+        )
+        settings.setValue("table/coordinates", self.shows_coordinates)
+
+    def recall(self, settings: QSettings) -> None:
+        """Order the rows as they were, and show coordinates where they were shown."""
+        self.show_coordinates(settings.value("table/coordinates", False, type=bool))
+        keys = {column.key for column in COLUMNS}
+        key = str(settings.value("table/sorted_by", ""))
+        if key in keys:
+            downwards = settings.value("table/descending", False, type=bool)
+            order = Qt.SortOrder.DescendingOrder if downwards else Qt.SortOrder.AscendingOrder
+            self.horizontalHeader().setSortIndicator(column_number(key), order)
 
     # Selection
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 
 import numpy as np
@@ -65,6 +65,8 @@ class ViewControls(Capability):
         One per side.
     scenes
         What they show.
+    say
+        Says a sentence in passing.
     parent
         The window.
     """
@@ -74,9 +76,11 @@ class ViewControls(Capability):
         editor: Editor,
         views: Mapping[Side, Canvas],
         scenes: Scenes,
+        say: Callable[[str], None],
         parent: QObject,
     ) -> None:
         self._editor = editor
+        self._say = say
         self._views = views
         self._fitted_for: tuple[Landmark, ...] | None = None
         self._fit: Similarity | None = None
@@ -268,6 +272,8 @@ class ViewControls(Capability):
         modes = list(LinkMode)
         following = modes[(modes.index(self._editor.view.link) + 1) % len(modes)]
         self._editor.look(link=following)
+        text, tip, _ = _LINKS[following]
+        self._say(f"Cameras: {text.replace('&', '').lower()}. {tip}.")
 
     def fit_all(self) -> None:
         """Show both bones as a whole, each from where it is seen.

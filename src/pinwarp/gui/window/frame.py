@@ -39,6 +39,8 @@ from pinwarp.gui.window.shortcut_overlay import ShortcutOverlay
 MESSAGE_MS = 6000
 # As large as a window opens where the screen has room.
 SIZE = QSize(1280, 800)
+# Of the panels at the right edge.
+RIGHT_WIDTH = 430
 # When, after it was shown, it is looked at whether it is on the screen as a whole.
 FRAME_KNOWN_MS = (0, 100, 500)
 
@@ -114,6 +116,7 @@ class WindowFrame(QMainWindow):
         fill(bar, actions, "tools")
         self.addToolBar(bar)
         self.shortcuts = ShortcutOverlay(self, shortcut_groups(actions))
+        self._first_layout = self.saveState()
 
     def _lay_out(self, above: Sequence[QWidget]) -> None:
         splitter = QSplitter(Qt.Orientation.Horizontal)
@@ -152,10 +155,11 @@ class WindowFrame(QMainWindow):
                 panel.height_changed.connect(lambda dock=dock: self._fit_dock(dock))
                 self._fitted.append(dock)
         self.setTabPosition(RIGHT, QTabWidget.TabPosition.North)
-        right[0].raise_()
+        self._front = right[0]
+        self._front.raise_()
         # The table keeps the whole height of the right edge.
         self.setCorner(Qt.Corner.BottomRightCorner, RIGHT)
-        self.resizeDocks([right[0]], [430], Qt.Orientation.Horizontal)
+        self.resizeDocks([self._front], [RIGHT_WIDTH], Qt.Orientation.Horizontal)
         self._fit_docks()
         return docks
 
@@ -227,6 +231,13 @@ class WindowFrame(QMainWindow):
             if isinstance(stored, QByteArray):
                 restore(stored)
         # Snapshots that stood there are not remembered.
+        self._fit_docks()
+
+    def reset_layout(self) -> None:
+        """Put docks and toolbar where they stood before anybody moved them."""
+        self.restoreState(self._first_layout)
+        self._front.raise_()
+        self.resizeDocks([self._front], [RIGHT_WIDTH], Qt.Orientation.Horizontal)
         self._fit_docks()
 
     def save_layout(self, settings: QSettings) -> None:

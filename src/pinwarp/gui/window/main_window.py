@@ -43,7 +43,15 @@ class MainWindow(WindowFrame):
         self.editor = editor = Editor()
         self.parts = Parts(self, editor, dialogs or WindowDialogs(self), settings, state_folder)
         quit_action = Action("quit", "&Quit", self.close, at="File.51", keys="Ctrl+Q")
-        self._actions = [*(action for part in self.parts for action in part.actions), quit_action]
+        reset = Action(
+            "reset_layout",
+            "Reset La&yout",
+            self.reset_layout,
+            at="View.71",
+            tip="Put all panels back where they were at first",
+        )
+        of_parts = (action for part in self.parts for action in part.actions)
+        self._actions = [*of_parts, reset, quit_action]
         self.furnish(list(self.parts), self._actions)
         self.scenes.show_from(*self.parts)
         self._signals = (
@@ -56,6 +64,8 @@ class MainWindow(WindowFrame):
         for signal in self._signals:
             signal.connect(self._on_change)
         self.restore_layout(settings)
+        for part in self.parts:
+            part.recall(settings)
         self._on_change()
 
     @property
@@ -88,6 +98,8 @@ class MainWindow(WindowFrame):
             event.ignore()
             return
         self.save_layout(self._settings)
+        for part in self.parts:
+            part.remember(self._settings)
         for signal in self._signals:
             signal.disconnect(self._on_change)
         self.jobs.shut_down()

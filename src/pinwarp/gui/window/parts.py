@@ -83,7 +83,7 @@ class Parts:
         self.warps = Warps(editor, scenes, surfaces, lambda: destination.is_slow)
         self.quality = QualityPresenter(self.warps)
         self.shown_session = ShownSession(editor, scenes, self.warps, self.quality)
-        self.views = ViewControls(editor, views, scenes, frame)
+        self.views = ViewControls(editor, views, scenes, say, frame)
         self.ghosts = Ghosts(editor, self.warps, surfaces)
         self.hand = Hand(editor, views, self.ghosts)
         self.bones = BoneEdits(editor, say)
