@@ -238,7 +238,9 @@ class DrawnScene:
     def _look(self) -> None:
         """Say of everything drawn whether it is seen, how clearly, and before what."""
         overlay = self.scene.of(Overlay)
-        overlay_visible = overlay is not None and overlay.visible
+        # Without a bone of its own the warped source is this side's: solid, and never hidden.
+        is_alone = self.surface is None
+        overlay_visible = overlay is not None and (overlay.visible or is_alone)
         for full, stand_in, visible in (
             (self._bone, self._coarse_bone, True),
             (self._overlay, self._coarse_overlay, overlay_visible),
@@ -249,7 +251,8 @@ class DrawnScene:
         for drawn in (self._overlay, self._coarse_overlay):
             if overlay is not None and drawn.actor is not None:
                 opacity = overlay.map_opacity if drawn.is_coloured else overlay.opacity
-                drawn.actor.prop.opacity = opacity
+                drawn.actor.prop.opacity = 1.0 if is_alone else opacity
+                drawn.actor.prop.color = theme.SOURCE_COLOUR if is_alone else theme.OVERLAY_COLOUR
         self._folds.set_visible(overlay_visible)
         shows_map = overlay_visible and self._overlay.is_coloured
         for drawn in (self._bone, self._coarse_bone):

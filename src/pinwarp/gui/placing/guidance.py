@@ -20,6 +20,12 @@ from pinwarp.session.guide import next_incomplete, step_at, with_template
 from pinwarp.session.session import Session
 from pinwarp.session.signals import isolated
 
+_ONLY_POINTS = {
+    Side.SOURCE: "The source has no mesh: its landmarks are imported or typed. Ctrl+1 opens one.",
+    Side.DESTINATION: "The destination has no mesh: its landmarks are imported or typed, and the "
+    "warped source is shown. Ctrl+2 opens one.",
+}
+
 
 class Guidance(Capability):
     """Tells the user where things stand; ``said`` emits messages for the status bar.
@@ -132,6 +138,9 @@ class Guidance(Capability):
             self.hint.setText(self._hover_words(editor.view.hovered))
             return
         missing = [side for side in Side if session.mesh(side) is None]
+        if missing and session.pairs:
+            self.hint.setText(_ONLY_POINTS[missing[0]])
+            return
         if missing:
             self.hint.setText(f"Open the {missing[0].value} mesh to begin, or drop it on its view.")
             return
@@ -141,11 +150,13 @@ class Guidance(Capability):
                 "a drag orbits."
             )
             return
-        target = self._ghosts.target
-        targets = [f"on the {side.value} places {target(side) or 'a new one'}" for side in Side]
+        targets = [self._ghosts.target(side) or "a new landmark" for side in Side]
+        on_both = "A click on either bone places a new landmark."
+        on_each = f"A click on the source places {targets[0]}, on the destination {targets[1]}."
         space = self._hand.accept_action.keys
         ghost = f"  {space} accepts the ghost." if self._hand.offers_ghost else ""
-        self.hint.setText(f"A click {targets[0]}, {targets[1]}.{ghost}")
+        says = on_each if any(map(self._ghosts.target, Side)) else on_both
+        self.hint.setText(f"{says}{ghost}")
 
     def _hover_words(self, name: str) -> str:
         landmark = self._editor.session.landmark(name)

@@ -38,6 +38,11 @@ _EMPTY_HINTS = {
     "To look around first: File > Open Sample Bones",
     Side.DESTINATION: "Drop the destination mesh here\nor open it with Ctrl+2",
 }
+# Where there is something else to be seen, which words over it would cover.
+_NO_MESH = {
+    Side.SOURCE: "no mesh yet (Ctrl+1)",
+    Side.DESTINATION: "no mesh yet (Ctrl+2)",
+}
 
 
 def session_drawables(
@@ -54,17 +59,20 @@ def session_drawables(
     Selected landmarks get a second arrow, as at penalty 0 the warp misses none of them.
     """
     mesh, file = session.mesh(side), session.mesh_file(side)
-    yield Caption(side.value.capitalize(), "" if file is None else _file_words(file))
+    carried = side is Side.DESTINATION and result is not None and result.vertices is not None
+    markers = _markers(side, session, selection, view, result)
+    is_empty = mesh is None and not carried and not markers
+    words = _file_words(file) if file is not None else "" if is_empty else _NO_MESH[side]
+    yield Caption(side.value.capitalize(), words)
     if mesh is not None:
         yield Bone(mesh, view.wireframe)
-    else:
+    elif is_empty:
         yield Hint(_EMPTY_HINTS[side])
-    carried = side is Side.DESTINATION and result is not None and result.vertices is not None
-    if mesh is not None or carried:
+    if not is_empty:
         yield ScaleBar(unit_on(session, side))
     if view.section is not None:
         yield Cut(view.section)
-    yield Markers(_markers(side, session, selection, view, result), view.marker_radius)
+    yield Markers(markers, view.marker_radius)
     if side is Side.DESTINATION and view.arrows:
         arrows = _arrows(session, selection, view, result, quality)
         if arrows:

@@ -20,7 +20,7 @@ from pinwarp.gui.drawn.surfaces import Surfaces
 from pinwarp.gui.painted.legend import PaintedLegend
 from pinwarp.gui.painted.marker_layer import MarkerLayer
 from pinwarp.gui.scene.camera_pose import Matrix, Pose, best_frame, fitted
-from pinwarp.gui.scene.drawables import Drawable, GridLines, Legend, Motion, Overlay
+from pinwarp.gui.scene.drawables import Drawable, GridLines, Legend, Markers, Motion, Overlay
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.scene.sight import through_ball
 from pinwarp.gui.style import theme
@@ -77,6 +77,7 @@ class Canvas(SightedView):
     def show_scene(self, scene: Scene) -> None:
         """Show another scene: drawn and painted is only what is new in it."""
         surface, moved = self.surface, scene.of(Motion) != self.drawn(Motion)
+        was_empty = self.bone is None
         changed = self._stage.show(scene)
         # The sheet repaints by itself: no bone is rendered anew for a label.
         self.layer.show_scene(scene)
@@ -86,6 +87,8 @@ class Canvas(SightedView):
             self.layer.update()
         if self.surface is not surface:
             self._full_frame_seconds = 0.0
+            self.look_at_all()
+        elif was_empty and self.bone is not None:
             self.look_at_all()
         elif changed & {Overlay, GridLines}:
             if not self.camera.is_set and Overlay in changed:
@@ -175,8 +178,17 @@ class Canvas(SightedView):
 
     @property
     def bone(self) -> pv.PolyData | None:
-        """What the camera is fitted to: this side's mesh, else the overlay, else None."""
-        return self._stage.bone
+        """What the camera is fitted to: this side's mesh, else the overlay, else its landmarks."""
+        return self._stage.bone or self._points
+
+    @property
+    def _points(self) -> pv.PolyData | None:
+        """The landmarks as far as they are all there is; None for fewer than two places."""
+        markers = self.drawn(Markers)
+        places = np.array([m.position for m in markers.markers] if markers is not None else [])
+        if len(places) < 2 or not np.ptp(places, axis=0).any():
+            return None
+        return pv.PolyData(places)
 
     def look_at_all(self, frame: Matrix | None = None) -> None:
         """Fit everything, the longest axis upright and the widest across, or from a given side."""

@@ -123,7 +123,7 @@ class Viewport(Canvas):
         assert press.grip is not None, "else it is an orbit"
         press.dragging = True
         at = event.position() + press.offset
-        if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
+        if self.surface is None or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
             # Off the surface: a femoral head's centre lies inside the bone.
             position: NDArray | None = self.in_view_plane(at, np.array(press.grip.position))
         else:
