@@ -11,6 +11,7 @@ from qtpy.QtWidgets import (
     QCheckBox,
     QDockWidget,
     QLabel,
+    QProgressBar,
     QPushButton,
     QRadioButton,
     QSlider,
@@ -127,6 +128,19 @@ def test_the_handle_of_every_slider_stands_out_from_its_groove(sample):
         values = luminances(row[max(0, handle.left() - 2) : handle.right() + 3])
         around = luminances(pixels(slider)[0, 0])
         assert max(contrast(value, around) for value in values) >= VISIBLE, slider.accessibleName()
+
+
+@pytest.mark.parametrize("share", [0, 50, 100])
+def test_the_words_of_a_progress_bar_can_be_read_however_far_it_is(sample, share):
+    bar = QProgressBar(sample.window)
+    bar.setFormat("%v of %m")
+    bar.setValue(share)
+    bar.setGeometry(100, 300, 110, 22)
+    bar.show()
+    middle = pixels(bar)[4:-4, 35:75]
+    assert greatest_contrast(middle) >= READABLE
+    bar.setParent(None)
+    bar.deleteLater()
 
 
 @pytest.mark.parametrize("kind", [QCheckBox, QRadioButton])

@@ -22,8 +22,8 @@ from pinwarp.session.session import Session
 
 _ASKS = {
     LandmarkState.EMPTY: "click it on either bone",
-    LandmarkState.SOURCE_ONLY: "placed on the source: click it on the destination",
-    LandmarkState.DESTINATION_ONLY: "placed on the destination: click it on the source",
+    LandmarkState.SOURCE_ONLY: "click it on the destination",
+    LandmarkState.DESTINATION_ONLY: "click it on the source",
     LandmarkState.PAIRED: "placed on both bones",
 }
 

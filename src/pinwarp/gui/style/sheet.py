@@ -64,6 +64,11 @@ def window_sheet(palette: QPalette) -> str:
         border: 1px solid {edge}; border-radius: 4px; background: {pressed};
     }}
     QPushButton:checked {{ padding: 4px 10px; }}
+    QProgressBar {{
+        border: 1px solid {edge}; border-radius: 3px; text-align: center;
+        background: {base}; color: {text};
+    }}
+    QProgressBar::chunk {{ border-radius: 2px; background: {pressed}; }}
     QPushButton[primary="true"]:enabled {{
         border: none; border-radius: 4px; padding: 5px 10px; background: #1d6bb0; color: white;
     }}
