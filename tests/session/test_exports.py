@@ -243,7 +243,7 @@ def test_names_are_harmless_in_a_script(beside, tmp_path):
 
 def test_a_mesh_elsewhere_is_named_by_its_whole_path(sample, tmp_path):
     script = script_of(sample, tmp_path)
-    assert f"HERE / {sample.source.path.as_posix()!r}" in script
+    assert f"Path({sample.source.path.as_posix()!r})" in script
 
 
 def test_without_a_mesh_or_a_pair_there_is_no_script(sample, tmp_path):

@@ -33,6 +33,10 @@ class Commands(TyperGroup):
         """Run the command; what was raised for the user is told, not traced."""
         try:
             return super().invoke(ctx)
+        except typer.BadParameter as error:
+            # Whose value it is, is said before; that it is one says nothing.
+            error.message = error.message.replace("Value error, ", "")
+            raise
         except (PinwarpError, OSError) as error:
             tell_error(words_of(error))
             raise typer.Exit(BAD_USAGE) from None

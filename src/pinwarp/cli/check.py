@@ -13,6 +13,7 @@ from rich.table import Table
 
 from pinwarp.cli.options import SessionFile
 from pinwarp.core.findings import Severity
+from pinwarp.core.words import counted
 from pinwarp.io.setting_keys import plain_settings
 from pinwarp.session.judging import check as checking
 from pinwarp.session.keeping.files import read_session
@@ -64,7 +65,7 @@ def _about(session: Session) -> dict[str, Any]:
 
 def _print(console: Console, name: str, session: Session, checked: checking.Check) -> None:
     unit = session.unit
-    pairs = Table("Pair", title=f"{name}: {len(checked.pairs)} pairs, lengths in {unit}")
+    pairs = Table("Pair", title=f"{name}: {counted(len(checked.pairs), 'pair')}, lengths in {unit}")
     for column in ("Residual", "Left out", "Standardised"):
         pairs.add_column(column, justify="right")
     named = {name for x in checked.findings if x.severity is Severity.WRONG for name in x.names}

@@ -11,6 +11,7 @@ from pinwarp.cli.options import Applied, Blend, Force, Penalty, SessionFile, wit
 from pinwarp.cli.telling import BAD_USAGE, progress_bar, refuse_existing, tell_error, tell_notes
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
+from pinwarp.core.words import counted
 from pinwarp.session.keeping.files import read_session, with_meshes
 from pinwarp.session.outputs.warp_files import FileWarper, outputs_of, warp_each
 from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date, warp_in_words
@@ -78,7 +79,7 @@ def warp(
             tell_notes(file.notes, file.source.name)
             applied = warp_in_words(opened)
             points = semilandmarks_in_words(warped.result)
-            count = f"{len(opened.pairs)} pairs" + (f", {points}" if points else "")
+            count = counted(len(opened.pairs), "pair") + (f", {points}" if points else "")
             typer.echo(f"{file.output}: {applied}, {count}")
     if failed:
         raise typer.Exit(BAD_USAGE)

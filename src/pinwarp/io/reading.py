@@ -87,7 +87,9 @@ def read_content(
             progress(share)
     data = whole.getvalue()
     if not data:
-        raise FileFormatError(place, f"The file is empty. Save or export the {what} again.")
+        raise FileFormatError(
+            place, "The file is empty. Save or export it again where it came from."
+        )
     return Content(place, data, digest.hexdigest())
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from pinwarp.core.landmarks import Landmark, Side
+from pinwarp.core.words import counted
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.style.lengths import format_length
@@ -203,7 +204,7 @@ class Exports(Capability):
 
     def _say_exported(self, path: Path, warp: SolvedWarp) -> None:
         session = warp.session
-        count = f"{len(session.pairs)} pairs"
+        count = counted(len(session.pairs), "pair")
         if points := semilandmarks_in_words(warp.result):
             count += f", {points}"
         penalty = f"penalty {format_length(session.settings.penalty, session.unit, 6)}"

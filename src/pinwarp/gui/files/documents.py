@@ -10,6 +10,7 @@ from qtpy.QtWidgets import QMenu
 
 from pinwarp.core.errors import PinwarpError, words_of
 from pinwarp.core.landmarks import Side
+from pinwarp.core.words import counted
 from pinwarp.gui.capability.action import Action, placed
 from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.files.file_dialogs import FileDialogs, OpenTwice
@@ -330,7 +331,7 @@ class Documents(Capability):
             else:
                 self._editor.replace_all(session, path, sha256=sha256)
                 self._recent.add(path)
-            self._tasks.said.emit(f"Opened {path.name}: {len(session.pairs)} pairs")
+            self._tasks.said.emit(f"Opened {path.name}: {counted(len(session.pairs), 'pair')}")
             return True
 
         self._meshes.open(record, path.parent, f"Opening {path.name}", arrived)

@@ -9,6 +9,7 @@ from pathlib import Path
 from qtpy.QtCore import QObject, Qt, Signal
 
 from pinwarp.core.errors import words_of
+from pinwarp.core.words import counted
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.files.file_dialogs import FileDialogs
@@ -139,7 +140,7 @@ class Recovery(QObject, Capability):
                 lock.release()
             left_out = [path.name for path in instead_of if path.absolute() != work.path]
             self._tasks.said.emit(
-                f"Restored {lost.name}: {lost.pairs} pairs, not saved yet"
+                f"Restored {lost.name}: {counted(lost.pairs, 'pair')}, not saved yet"
                 + (f"; not opened: {', '.join(left_out)}" if left_out else "")
             )
             return True

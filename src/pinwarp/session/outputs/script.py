@@ -11,6 +11,7 @@ from pathlib import Path
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Landmark, as_position
 from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
+from pinwarp.core.words import counted
 from pinwarp.io.mesh_reference import MeshReference
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session.session import Session
@@ -61,7 +62,7 @@ def script_of(session: Session | SolvedWarp, folder: Path) -> str:
     warped = f"{path.stem}_warped{path.suffix}"
     placed = len(session.pairs)
     session, is_slid = _of_plain_pairs(session, warp)
-    count = f"{len(session.pairs)} pairs"
+    count = counted(len(session.pairs), "pair")
     count += f", {len(session.pairs) - placed} of them semilandmarks" if is_slid else ""
     pairs = [
         f"    {pair.name!r}: ({pair.source!r}, {pair.destination!r})," for pair in session.pairs
@@ -78,7 +79,7 @@ def script_of(session: Session | SolvedWarp, folder: Path) -> str:
             *imports,
             "",
             "HERE = Path(__file__).resolve().parent",
-            f"SOURCE_MESH = HERE / {_relative(path, folder)!r}",
+            f"SOURCE_MESH = {_place(path, folder)}",
             f"SOURCE_SHA256 = {source.sha256!r}",
             f"WARPED_MESH = HERE / {warped!r}",
             "",
@@ -169,8 +170,10 @@ def _literal(value: object) -> str:
     return 'float("inf")' if value == math.inf else repr(value)
 
 
-def _relative(path: Path, folder: Path) -> str:
-    """Return a path as seen from a folder above it; others stay absolute."""
+def _place(path: Path, folder: Path) -> str:
+    """Return a path in Python as seen from a folder above it; others are absolute."""
     whole = Path(os.path.abspath(path))
     base = Path(os.path.abspath(folder))
-    return (whole.relative_to(base) if whole.is_relative_to(base) else whole).as_posix()
+    if whole.is_relative_to(base):
+        return f"HERE / {whole.relative_to(base).as_posix()!r}"
+    return f"Path({whole.as_posix()!r})"
