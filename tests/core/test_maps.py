@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import math
+import weakref
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,6 +19,7 @@ from pinwarp.core.maps import MapKind, automatic_range, overall_size, volume_map
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import PenaltyConvention, factorise, solve
+from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session import edits
 from pinwarp.session.judging.survey import Surveyor
@@ -257,6 +260,23 @@ def test_what_a_survey_may_share_is_computed_once(session):
     moved = surveyor.survey(other, bone(1.2), MapKind.DISTANCE)
     assert moved.map.highest > again.map.highest
     assert surveyor.indexes == 2
+
+
+def test_nothing_is_kept_of_meshes_that_are_closed(session):
+    surveyor, solver = Surveyor(), WarpSolver()
+    surveyor.survey(
+        solver.solve(WarpInputs.of(session)), session.mesh(Side.DESTINATION), MapKind.DISTANCE
+    )
+    index = weakref.ref(surveyor._index)
+    other = replace(session, source=file_of(bone()), destination=file_of(bone(1.2)))
+    # Looked at without a map: nothing takes the place of what was made for the other meshes.
+    surveyor.survey(
+        WarpSolver().solve(WarpInputs.of(other)), other.mesh(Side.DESTINATION), kind=None
+    )
+    gc.collect()
+    assert index() is None
+    held = [thing for thing in vars(surveyor).values() if isinstance(thing, SurfaceIndex | Mesh)]
+    assert all(thing in (other.mesh(Side.SOURCE), other.mesh(Side.DESTINATION)) for thing in held)
 
 
 def test_relative_and_plain_maps_are_not_mixed_up(session):

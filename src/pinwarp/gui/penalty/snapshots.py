@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 from qtpy.QtCore import QObject, QRect, QRectF, QSize, Qt
@@ -181,7 +180,7 @@ class Snapshots(Capability):
                 left_out, _ = quality.curve.at(flexibility)
         return Snapshot(
             picture=picture_of(self._canvas),
-            inputs=replace(result.inputs, mesh=None, stand_in=None),
+            inputs=result.inputs.without_meshes,
             mesh=weakref.ref(mesh) if mesh is not None else None,
             flexibility=flexibility,
             leave_one_out=left_out if left_out is not None and np.isfinite(left_out) else None,

@@ -175,6 +175,7 @@ class CurveTool(ViewTool):
     def stop(self) -> None:
         """Leave: what was clicked is forgotten."""
         self.stops, self._found, self._mesh, self._cursor = (), None, None, None
+        self._drawing = None
         super().stop()
 
     def click(self, view: Canvas, at: QPointF, twice: bool) -> None:

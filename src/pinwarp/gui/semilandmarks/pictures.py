@@ -77,6 +77,8 @@ class Picture:
                 self._slides = (shown, slides_of(shown))
             if self._slides[1] is not None:
                 yield self._slides[1]
+        else:
+            self._slides = (None, None)
 
     def _paths_of(self, shown: Shown, chosen: str) -> Paths:
         drawing = self._tool.drawing if self._tool is not None else None

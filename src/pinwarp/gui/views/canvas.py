@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Hashable
 from typing import TypeVar
 
@@ -224,7 +225,9 @@ class Canvas(SightedView):
         # Not its time stamp: the clipping range changes with every warp, and hides nothing.
         pose = (camera.GetPosition(), camera.GetFocalPoint(), camera.GetViewUp())
         lens = (camera.GetViewAngle(), camera.GetParallelScale(), camera.GetParallelProjection())
-        return (pose, lens, self.width(), self.height(), self.surface, share)
+        # Not the surface itself: who remembers a key would keep it when its session is closed.
+        surface = weakref.ref(self.surface) if self.surface is not None else None
+        return (pose, lens, self.width(), self.height(), surface, share)
 
     def pick(self, at: QPointF, reach: float = 0.0) -> NDArray | None:
         """Return the position on the surface under a place on the screen.

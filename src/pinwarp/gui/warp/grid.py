@@ -120,6 +120,9 @@ class GridPresenter(Capability):
         view = self._editor.view
         mesh = self._editor.session.mesh(Side.SOURCE)
         wanted = None
+        if self._bounds is not None and self._bounds[0] is not mesh:
+            # Else it would be kept for as long as no grid is asked for.
+            self._bounds = None
         if mesh is not None and view.grid is not GridKind.NONE:
             wanted = (mesh, view.grid, view.grid_share)
         if wanted == self._drawn_for:
@@ -130,7 +133,7 @@ class GridPresenter(Capability):
         self._ask()
 
     def _grid_of(self, mesh: Mesh, kind: GridKind, share: float) -> _Grid:
-        if self._bounds is None or self._bounds[0] is not mesh:
+        if self._bounds is None:
             self._bounds = (mesh, mesh.bounds)
         low, high = self._bounds[1]
         if kind.axis is None:

@@ -86,6 +86,7 @@ class Surveyor:
         self._index: SurfaceIndex | None = None
         self._index_warped: SurfaceIndex | None = None
         self._result: WarpResult | None = None
+        self._source: Mesh | None = None
         self._destination: Mesh | None = None
         self._determinant = np.zeros(0)
         self._folds: Folds | None = None
@@ -126,6 +127,7 @@ class Surveyor:
         """
         missing = "" if kind is None else _missing(result, destination, kind)
         mesh, shown = result.inputs.mesh, result.shown
+        self._let_go_of_others(mesh, destination)
         if mesh is None or shown is None:
             return Survey(result, kind, missing=missing)
         try:
@@ -136,9 +138,6 @@ class Surveyor:
         if taken_out != self._taken_out:
             self._taken_out = taken_out
             self._maps = {part: made for part, made in self._maps.items() if not part.is_ratio}
-        if destination is not self._destination:
-            self._destination = destination
-            self._maps.pop(MapKind.DISTANCE, None)
         if kind is not None and not missing:
             try:
                 if kind not in self._maps:
@@ -149,6 +148,15 @@ class Surveyor:
                 missing = str(error)
         found = self._maps.get(kind) if kind is not None and not missing else None
         return Survey(result, kind, found, missing, self._folds, self._size)
+
+    def _let_go_of_others(self, mesh: Mesh | None, destination: Mesh | None) -> None:
+        """Keep nothing of meshes that are closed: an index takes ten times their memory."""
+        if self._source is not mesh:
+            self._source, self._index_warped = mesh, None
+            self._result, self._maps, self._folds = None, {}, None
+        if self._destination is not destination:
+            self._destination, self._index = destination, None
+            self._maps.pop(MapKind.DISTANCE, None)
 
     def _look_at(self, result: WarpResult, mesh: Mesh, shown: Spline) -> None:
         """Do what every survey of a warp needs, unless it was done for the last one."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,6 +66,14 @@ class WarpInputs:
             refinement=refinement,
             sliding=sliding,
         )
+
+    @property
+    def without_meshes(self) -> WarpInputs:
+        """The same with no mesh in it, for whoever remembers a warp and keeps no mesh alive."""
+        sliding = self.sliding
+        if sliding is not None:
+            sliding = replace(sliding, mesh=None, target=None)
+        return replace(self, mesh=None, stand_in=None, sliding=sliding)
 
 
 @dataclass(frozen=True, eq=False)

@@ -68,6 +68,11 @@ class WarpSolver:
             return last
         # A new state of rest: the shortcuts from the old one are of no more use.
         self._influence = None
+        if self._sweep is not None:
+            # Else it stays until another one takes its place, long after its bones are closed.
+            meshes = (inputs.mesh, inputs.stand_in)
+            if self._sweep[0] not in [_swept_by(inputs, mesh) for mesh in meshes]:
+                self._sweep = None
         result = self.solve_landmarks(inputs)
         if result.factor is not None and result.shown is not None:
             if len(inputs.source) <= EAGER_MODES:
@@ -281,8 +286,7 @@ class WarpSolver:
 
     def _swept(self, result: WarpResult, mesh: Mesh) -> NDArray[np.float32]:
         inputs = result.inputs
-        settings = replace(inputs.settings, penalty=0.0)
-        key = (settings, inputs.source, inputs.destination, inputs.sliding, mesh)
+        key = _swept_by(inputs, mesh)
         if self._sweep is None or self._sweep[0] != key:
             # Free the old basis before the new one is made: each may be 100 MB.
             self._sweep = self._influence = None
@@ -313,6 +317,12 @@ def is_rounding(length: float, place: Position) -> bool:
     (True, False)
     """
     return length < max(rounding_among(place), 1e-300)
+
+
+def _swept_by(inputs: WarpInputs, mesh: Mesh | None) -> tuple[object, ...]:
+    """Return what a sweep of the penalty depends on."""
+    settings = replace(inputs.settings, penalty=0.0)
+    return (settings, inputs.source, inputs.destination, inputs.sliding, mesh)
 
 
 def _factorises_the_same(a: WarpInputs, b: WarpInputs) -> bool:
