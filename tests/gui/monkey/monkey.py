@@ -17,7 +17,7 @@ from qtpy.QtWidgets import QApplication
 from tests.gui.monkey.answers import Answers
 from tests.gui.monkey.files import Files
 from tests.gui.monkey.hands import Hands
-from tests.gui.monkey.memory import megabytes_in_use, warm_up
+from tests.gui.monkey.memory import WARM_AFTER, Held, grown, held, leave_everything, warm_up
 from tests.gui.monkey.watch import Events, Watch
 from vtkmodules.vtkCommonCore import vtkObjectBase
 
@@ -27,12 +27,12 @@ from pinwarp.session.keeping.journal import WORK
 from pinwarp.session.session import Session, to_record
 
 CHECK_EVERY = 100
+# Events after which what it began with is opened again, to see what is held of all the rest.
+REOPEN_EVERY = 1000
 LAST = 30
 # Long: these machines are busy.
 SETTLE_SECONDS = 120
 JOURNAL_SECONDS = 30
-# The memory of the first thousand events may grow by so much.
-WARM_AFTER, MOST_GROWTH = 1000, 1.10
 # More than at the start; what is open differs, but nothing may add up.
 MOST_MORE = {"top_level": 20, "objects": 300, "vtk": 40}
 
@@ -43,7 +43,6 @@ class Figures:
 
     step: int
     events: int
-    megabytes: float
     top_level: int
     objects: int
     vtk: int
@@ -61,23 +60,31 @@ class Monkey:
     Parameters
     ----------
     open_window
-        Opens a window with the bones on it; called again when the monkey has closed it.
+        Opens an empty window; called again when the monkey has closed it.
+    begin
+        Opens the bones in it.
     state_folder
         Where that window keeps its unsaved work.
     folder
         Where the monkey's files are made.
     seed
         Of all that is random.
+    reopen_every
+        So many events.
     """
 
     def __init__(
         self,
         open_window: Callable[[], MainWindow],
+        begin: Callable[[MainWindow], None],
         state_folder: Path,
         folder: Path,
         seed: int,
+        reopen_every: int = REOPEN_EVERY,
     ) -> None:
         self._open_window = open_window
+        self._begin = begin
+        self._reopen_every = reopen_every
         self._windows = state_folder / "windows"
         self._seed = seed
         self._rng = random.Random(seed)
@@ -90,9 +97,11 @@ class Monkey:
         self._events = Events()
         self._start: Session | None = None
         self.figures: list[Figures] = []
-        self.window = self._fresh_window()
-        self._size = self.window.size()
+        self.held: list[Held] = []
+        self._next_look = reopen_every
         self._is_long = False
+        self._open_anew()
+        self._size = self.window.size()
 
     def play(self, events: int) -> None:
         """Do random things, until so many events; raise :class:`Broken` at the first that breaks.
@@ -105,6 +114,7 @@ class Monkey:
                 self._is_long = events > WARM_AFTER
                 self._warm_up()
                 self._size = self.window.size()
+                self._look()
                 start = self._count(0, 0)
                 print(start, flush=True)
                 number = 0
@@ -113,6 +123,9 @@ class Monkey:
                     self._step(number)
                     if number % CHECK_EVERY == 0 or self._events.count >= events:
                         self._check(number, start)
+                    if self._events.count >= min(events, self._next_look):
+                        self._look()
+                        self._nothing_seen(number)
             finally:
                 QApplication.instance().removeEventFilter(self._events)
                 self.answers.stop()
@@ -137,15 +150,22 @@ class Monkey:
         if not self.window.isVisible():
             self.window.deleteLater()
             self._delete_deferred()
-            self.window = self._fresh_window()
+            self._open_anew()
             self._warm_up()
             self._steps.append("   opened anew")
 
-    def _fresh_window(self) -> MainWindow:
-        window = self._open_window()
-        window.editor.saved.connect(self._on_saved)
-        self._start = window.editor.committed
-        return window
+    def _open_anew(self) -> None:
+        self.window = self._open_window()
+        self.window.editor.saved.connect(self._on_saved)
+        self._open_bones()
+
+    def _open_bones(self) -> None:
+        editor = self.window.editor
+        self._begin(self.window)
+        self._settle()
+        # What was opened step by step is where the monkey begins.
+        editor.replace_all(editor.committed, None)
+        self._settle()
 
     def _warm_up(self) -> None:
         if self._is_long:
@@ -204,12 +224,19 @@ class Monkey:
         for what, more in MOST_MORE.items():
             before, now = getattr(start, what), getattr(figures, what)
             self._require(now <= before + more, f"{what} grew from {before} to {now}")
-        warm = next((f.megabytes for f in self.figures if f.events >= WARM_AFTER), None)
-        if warm is not None:
-            self._require(
-                figures.megabytes <= MOST_GROWTH * warm,
-                f"memory grew from {warm:.0f} to {figures.megabytes:.0f} MB",
-            )
+
+    def _look(self) -> None:
+        """Open what it began with again, and see what is still held of all the rest."""
+        self._settle()
+        leave_everything(self.window)
+        self._settle()
+        self._open_bones()
+        self._delete_deferred()
+        self.held.append(held(self.window, self._events.count, self._size, self._settle))
+        print(self.held[-1], flush=True)
+        words = grown(self.held)
+        self._require(not words, f"with the same open as in the beginning grew: {words}")
+        self._next_look = self._events.count + self._reopen_every
 
     def _history_holds(self) -> int:
         """Undo all, redo all; return how many steps there were to undo."""
@@ -255,7 +282,6 @@ class Monkey:
         return Figures(
             step=number,
             events=self._events.count,
-            megabytes=megabytes_in_use(self.window, self._size, self._settle),
             top_level=len(tops),
             objects=sum(1 + len(top.findChildren(QObject)) for top in tops if top.parent() is None),
             vtk=sum(things.values()),
