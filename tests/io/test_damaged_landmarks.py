@@ -19,10 +19,10 @@ from hypothesis import strategies as st
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.core.settings import WarpSettings
-from pinwarp.io.csv_text import lines_of
 from pinwarp.io.file_names import is_session
 from pinwarp.io.landmark_files import FORMATS, read_landmarks, write_landmarks
 from pinwarp.io.session_file import SessionRecord, read_session, write_session
+from pinwarp.io.text import lines_of
 
 from .landmark_formats.examples import EXAMPLES
 

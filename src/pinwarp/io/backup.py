@@ -9,9 +9,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from pinwarp.io.atomic import atomic_path
-from pinwarp.io.csv_text import LARGEST
 from pinwarp.io.file_names import backup_of
 from pinwarp.io.reading import open_regular
+from pinwarp.io.text import LARGEST
 
 
 def write_keeping_previous(path: Path, write: Callable[[Path], None]) -> OSError | None:

@@ -6,6 +6,8 @@ import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping
 from xml.parsers import expat
 
+from pinwarp.io.text import decoded
+
 DEEPEST = 100
 MOST = 200_000
 """Deeper, and more elements, than landmarks or a mesh have: each takes memory of its own."""
@@ -35,7 +37,7 @@ def parse_xml(
     Parameters
     ----------
     data
-        All of it; text is taken as it is, whatever encoding it says.
+        All of it, whatever encoding it says; blanks in front of it are passed over.
     begin, end, text
         Called with the tag, attributes and line of an element, with the tag of one that ends, and
         with what stands in between.
@@ -51,6 +53,10 @@ def parse_xml(
     a {} 1
     b {'x': '1'} 1
     """
+    whole = data if isinstance(data, str) else decoded(data)
+    # XML itself allows nothing before its declaration.
+    content = whole.lstrip("\ufeff \t\r\n")
+    lines_before = whole.count("\n", 0, len(whole) - len(content))
     parser = expat.ParserCreate()
     parser.buffer_text = True
     parser.buffer_size = _BUFFER
@@ -60,7 +66,7 @@ def parse_xml(
         nonlocal depth, count
         depth += 1
         count += 1
-        line = parser.CurrentLineNumber
+        line = lines_before + parser.CurrentLineNumber
         if depth > DEEPEST:
             raise XmlError("its elements are nested too deeply", line)
         if count > MOST:
@@ -74,7 +80,7 @@ def parse_xml(
 
     def refuse(*_declared: object) -> None:
         words = "it declares entities or defaults of its own, which it has no use for"
-        raise XmlError(words, parser.CurrentLineNumber)
+        raise XmlError(words, lines_before + parser.CurrentLineNumber)
 
     parser.StartElementHandler = start
     parser.EndElementHandler = leave
@@ -86,12 +92,13 @@ def parse_xml(
     parser.ElementDeclHandler = refuse
     parser.NotationDeclHandler = refuse
     try:
-        parser.Parse(data, True)
+        parser.Parse(content, True)
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code)
-        raise XmlError(f"this is not XML, or it was cut off ({reason})", error.lineno) from None
+        line = lines_before + error.lineno
+        raise XmlError(f"this is not XML, or it was cut off ({reason})", line) from None
     except (ValueError, LookupError) as error:
-        # Encodings that Python does not know, or that expat cannot be taught.
+        # Halves of characters.
         raise XmlError(f"this is not XML, or it was cut off ({error})", 1) from None
 
 

@@ -17,8 +17,9 @@ from pinwarp.io.csv_cells import (
     position_of,
     shortened,
 )
-from pinwarp.io.csv_text import LONGEST_CELL, Row, csv_line, lines_of, rows_of, separator_of
+from pinwarp.io.csv_text import LONGEST_CELL, Row, csv_line, rows_of, separator_of
 from pinwarp.io.landmark_formats.reading import SkippedLine
+from pinwarp.io.text import lines_of
 
 __all__ = ["ClipboardTable", "PastedLandmark", "SkippedLine", "clipboard_text", "read_clipboard"]
 

@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import csv
-import io
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
-from pinwarp.core.errors import FileFormatError
 from pinwarp.io.csv_cells import Numeral, formula_quoted
-from pinwarp.io.reading import read_content
 
-LARGEST = 64 << 20
 LONGEST_CELL = 100_000
 """Below what Python's reader takes, quotes included or not."""
 
@@ -45,59 +40,6 @@ class Row:
     def is_blank(self) -> bool:
         """Whether there is nothing in any cell."""
         return not self.problem and not any(cell.strip() for cell in self.cells)
-
-
-def read_text(path: str | Path, what: str, largest: int = LARGEST) -> str:
-    r"""Read a text file as UTF-8, UTF-16 with its mark, or else as Windows-1252.
-
-    Parameters
-    ----------
-    path
-        The file.
-    what
-        What it should be, for the messages.
-    largest
-        Refuse files of more bytes than this.
-
-    Returns
-    -------
-    str
-        Its text, line ends as they are.
-
-    Raises
-    ------
-    FileFormatError
-        When it is missing, empty, too large or not readable.
-
-    Examples
-    --------
-    >>> import tempfile, pathlib
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = pathlib.Path(folder, "a.csv")
-    ...     _ = path.write_bytes(b"\xef\xbb\xbfname,x,y,z\r\n")
-    ...     read_text(path, "landmark")
-    'name,x,y,z\r\n'
-    """
-    data = read_content(path, what=what, largest=largest).data
-    # Spreadsheets save "Unicode text" as UTF-16, and plain CSV in the old Windows encoding.
-    wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
-    for encoding in ("utf-16", "cp1252") if wide else ("utf-8-sig", "cp1252"):
-        try:
-            return data.decode(encoding)
-        except UnicodeDecodeError:
-            continue
-    return data.decode("latin-1")
-
-
-def lines_of(text: str) -> list[str]:
-    r"""Split text at LF, CRLF and CR only, keeping the line ends.
-
-    Examples
-    --------
-    >>> lines_of("a\r\nb\u2028c")
-    ['a\r\n', 'b\u2028c']
-    """
-    return list(io.StringIO(text, newline=""))
 
 
 def separator_of(lines: Iterable[str]) -> str:
@@ -208,19 +150,3 @@ def plain_line(cells: Iterable[str], separator: str = ",", *, all_in_quotes: boo
         for cell in cells
     ]
     return separator.join(quoted) + "\n"
-
-
-def refuse_binary(path: str | Path, text: str) -> None:
-    """Raise when what was read as text is not text.
-
-    Raises
-    ------
-    FileFormatError
-        When it holds a zero character, which no text does.
-
-    Examples
-    --------
-    >>> refuse_binary("a.csv", "name,x,y,z")
-    """
-    if "\0" in text:
-        raise FileFormatError(path, "This is not a text file. Choose a file of landmarks.")

@@ -9,7 +9,6 @@ from typing import Protocol
 from pinwarp.core.errors import FileFormatError, LandmarkError
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.io.atomic import write_atomically
-from pinwarp.io.csv_text import read_text, refuse_binary
 from pinwarp.io.landmark_formats import (
     bigwarp,
     idav,
@@ -24,6 +23,7 @@ from pinwarp.io.landmark_formats import (
 from pinwarp.io.landmark_formats.reading import MOST, LandmarkReading, SkippedLine
 from pinwarp.io.landmark_formats.sliders import with_sliders
 from pinwarp.io.landmark_formats.writing import Written
+from pinwarp.io.text import read_text, refuse_binary
 
 __all__ = [
     "FORMATS",

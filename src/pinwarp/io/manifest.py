@@ -13,8 +13,9 @@ from pinwarp.core.components import Components
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.names import visible
 from pinwarp.io.csv_cells import as_sentence, formula_unquoted, shortened
-from pinwarp.io.csv_text import Row, lines_of, read_text, refuse_binary, rows_of
+from pinwarp.io.csv_text import Row, rows_of
 from pinwarp.io.setting_keys import penalty_of
+from pinwarp.io.text import lines_of, read_text, refuse_binary
 
 REQUIRED = ("name", "destination_landmarks")
 OPTIONAL = ("destination_mesh", "penalty", "components")

@@ -12,7 +12,7 @@ from pinwarp.core.landmarks import Landmark, duplicate_names
 from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
 from pinwarp.io.atomic import write_atomically
 from pinwarp.io.csv_cells import as_sentence, shortened
-from pinwarp.io.csv_text import LONGEST_CELL, lines_of, read_text
+from pinwarp.io.csv_text import LONGEST_CELL
 from pinwarp.io.group_record import SlidRecord, group_lines, group_rows, groups_of
 from pinwarp.io.mesh_reference import MeshReference, mesh_text
 from pinwarp.io.refinement_record import RefinementRecord, refinement_text
@@ -27,6 +27,7 @@ from pinwarp.io.session_header import (
 )
 from pinwarp.io.session_table import Pair, read_table, table_lines
 from pinwarp.io.setting_keys import setting_lines
+from pinwarp.io.text import lines_of, read_text
 
 __all__ = ["MeshReference", "SessionRecord", "read_session", "write_session"]
 

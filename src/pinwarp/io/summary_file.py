@@ -8,7 +8,8 @@ from pathlib import Path
 from pinwarp.core.errors import FileFormatError
 from pinwarp.io.atomic import write_atomically
 from pinwarp.io.csv_cells import formula_unquoted, numeral
-from pinwarp.io.csv_text import csv_line, lines_of, read_text, rows_of
+from pinwarp.io.csv_text import csv_line, rows_of
+from pinwarp.io.text import lines_of, read_text
 
 SummaryRow = Mapping[str, str]
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Side
-from pinwarp.io.csv_text import lines_of, read_text
 from pinwarp.io.file_names import is_session
 from pinwarp.io.landmark_files import read_landmarks, recognised
 from pinwarp.io.session_file import read_session
+from pinwarp.io.text import lines_of, read_text
 
 
 def read_template(path: Path) -> tuple[str, ...]:

@@ -15,10 +15,11 @@ from pinwarp.io.csv_cells import (
     position_of,
     shortened,
 )
-from pinwarp.io.csv_text import Row, csv_line, lines_of, rows_of
+from pinwarp.io.csv_text import Row, csv_line, rows_of
 from pinwarp.io.landmark_formats.lines import checked_name, one_line
 from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written
+from pinwarp.io.text import lines_of
 
 NAME = "BigWarp CSV"
 SUFFIXES = (".bigwarp.csv",)

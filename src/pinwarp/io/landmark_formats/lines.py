@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from pinwarp.core.landmarks import Landmark, Position, Side
 from pinwarp.io.csv_cells import number_of
-from pinwarp.io.csv_text import LONGEST_CELL, lines_of
+from pinwarp.io.csv_text import LONGEST_CELL
 
 # Control characters, line ends of every kind, and halves of characters.
 _NOT_IN_A_LINE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]+")
@@ -65,20 +65,6 @@ def one_line(text: str) -> str:
     'left tragus'
     """
     return _NOT_IN_A_LINE.sub(" ", text)
-
-
-def filled_lines(text: str) -> Iterator[tuple[int, str]]:
-    r"""Yield the number and the text of every line that is not blank, counted from 1.
-
-    Examples
-    --------
-    >>> list(filled_lines("Version 1.0\r\n\r\n 2 \r\n"))
-    [(1, 'Version 1.0'), (3, '2')]
-    """
-    for number, line in enumerate(lines_of(text), 1):
-        stripped = line.strip()
-        if stripped:
-            yield number, stripped
 
 
 def three_numbers(words: Sequence[str], missing: str = "") -> Position | None:

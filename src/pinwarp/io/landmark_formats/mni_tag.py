@@ -10,15 +10,10 @@ from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.io.csv_cells import shortened
 from pinwarp.io.csv_text import LONGEST_CELL
-from pinwarp.io.landmark_formats.lines import (
-    checked_name,
-    filled_lines,
-    landmark_on,
-    one_line,
-    three_numbers,
-)
+from pinwarp.io.landmark_formats.lines import checked_name, landmark_on, one_line, three_numbers
 from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written, left_out, numbers_text, placed_only
+from pinwarp.io.text import filled_lines
 
 NAME = "MNI .tag"
 SUFFIXES = (".tag",)

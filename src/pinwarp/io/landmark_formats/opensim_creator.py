@@ -13,10 +13,11 @@ from pinwarp.io.csv_cells import (
     is_number,
     position_of,
 )
-from pinwarp.io.csv_text import Row, csv_line, lines_of, rows_of, separator_of
+from pinwarp.io.csv_text import Row, csv_line, rows_of, separator_of
 from pinwarp.io.landmark_formats.lines import checked_name
 from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written, placed_only
+from pinwarp.io.text import lines_of
 
 NAME = "OpenSim Creator CSV"
 SUFFIXES = (".csv", ".txt")

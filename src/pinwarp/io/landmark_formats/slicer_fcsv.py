@@ -12,10 +12,11 @@ from pinwarp.io.csv_cells import (
     position_of,
     shortened,
 )
-from pinwarp.io.csv_text import Row, lines_of, plain_line, rows_of
+from pinwarp.io.csv_text import Row, plain_line, rows_of
 from pinwarp.io.landmark_formats.lines import landmark_on, one_line
 from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import Written, in_millimetres, placed_only
+from pinwarp.io.text import lines_of
 
 NAME = "3D Slicer .fcsv"
 SUFFIXES = (".fcsv",)

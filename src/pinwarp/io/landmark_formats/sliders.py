@@ -9,8 +9,9 @@ from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.words import counted
-from pinwarp.io.csv_text import lines_of, read_text, rows_of
+from pinwarp.io.csv_text import rows_of
 from pinwarp.io.landmark_formats.reading import LandmarkReading, ReadGroup
+from pinwarp.io.text import lines_of, read_text
 
 _LARGEST = 8 << 20
 CURVES, SURFACE = ".sliders.csv", ".surfslide.csv"

@@ -10,9 +10,10 @@ from pathlib import Path
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Position, Side
 from pinwarp.io.csv_cells import number_of, shortened
-from pinwarp.io.landmark_formats.lines import filled_lines, landmark_on, one_line, three_numbers
+from pinwarp.io.landmark_formats.lines import landmark_on, one_line, three_numbers
 from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading, ReadGroup
 from pinwarp.io.landmark_formats.writing import Written, numbers_text
+from pinwarp.io.text import filled_lines
 
 NAME = "TPS"
 SUFFIXES = (".tps",)

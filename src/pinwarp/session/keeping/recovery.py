@@ -11,10 +11,10 @@ from pathlib import Path
 
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import pairs_of
-from pinwarp.io.csv_text import read_text
 from pinwarp.io.file_lock import FileLock
 from pinwarp.io.file_names import session_name
 from pinwarp.io.reading import hash_of
+from pinwarp.io.text import read_text
 from pinwarp.io.work_file import UnsavedWork, read_work
 from pinwarp.session.keeping.journal import LOCK, WINDOW, WORK, remove_window
 
