@@ -28,6 +28,8 @@ def parse_xml(
     begin: Callable[[str, Mapping[str, str], int], object],
     end: Callable[[str], object] = lambda _tag: None,
     text: Callable[[str], object] | None = None,
+    *,
+    most: int | None = None,
 ) -> None:
     """Walk through XML.
 
@@ -61,6 +63,7 @@ def parse_xml(
     parser.buffer_text = True
     parser.buffer_size = _BUFFER
     depth = count = 0
+    allowed = MOST if most is None else most
 
     def start(tag: str, attributes: dict[str, str]) -> None:
         nonlocal depth, count
@@ -69,8 +72,8 @@ def parse_xml(
         line = lines_before + parser.CurrentLineNumber
         if depth > DEEPEST:
             raise XmlError("its elements are nested too deeply", line)
-        if count > MOST:
-            raise XmlError(f"it has more than {MOST:,} elements", line)
+        if count > allowed:
+            raise XmlError(f"it has more than {allowed:,} elements", line)
         begin(tag, attributes, line)
 
     def leave(tag: str) -> None:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,49 +12,71 @@ import numpy as np
 from pinwarp.core.errors import FileFormatError, MeshError
 from pinwarp.core.mesh import Mesh
 from pinwarp.io.atomic import atomic_path
+from pinwarp.io.mesh_formats.gltf import read_gltf, write_glb, write_gltf
+from pinwarp.io.mesh_formats.kinds import foreign_in, foreign_named, kind_in
 from pinwarp.io.mesh_formats.obj import read_obj, write_obj
+from pinwarp.io.mesh_formats.off import read_off, write_off
 from pinwarp.io.mesh_formats.ply import read_ply, write_ply
 from pinwarp.io.mesh_formats.stl import read_stl, write_stl
-from pinwarp.io.mesh_formats.surface import BrokenMeshError
+from pinwarp.io.mesh_formats.surface import BrokenMeshError, Report, Surface
+from pinwarp.io.mesh_formats.threemf import read_3mf, write_3mf
 from pinwarp.io.mesh_formats.triangles import mesh_of
 from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
 from pinwarp.io.mesh_formats.vtk_legacy import read_legacy_vtk
-from pinwarp.io.mesh_formats.vtp import read_vtp
-from pinwarp.io.reading import read_content
+from pinwarp.io.mesh_formats.vtk_xml import read_vtk_xml
+from pinwarp.io.reading import Content, read_content
 
-MESH_SUFFIXES = (".stl", ".ply", ".obj", ".vtp", ".vtk")
+MESH_SUFFIXES = (
+    ".stl",
+    ".ply",
+    ".obj",
+    ".vtp",
+    ".vtk",
+    ".vtu",
+    ".off",
+    ".glb",
+    ".gltf",
+    ".3mf",
+)
 # What has room for more than places and triangles.
-NORMALS_SUFFIXES = (".ply", ".obj", ".vtp", ".vtk")
-SCALARS_SUFFIXES = (".ply", ".vtp", ".vtk")
+NORMALS_SUFFIXES = (".ply", ".obj", ".vtp", ".vtk", ".vtu", ".glb", ".gltf")
+SCALARS_SUFFIXES = (".ply", ".vtp", ".vtk", ".vtu")
 
-_READERS = {
+_Read = Callable[[bytes, Report], Surface]
+
+_READERS: dict[str, _Read] = {
     ".stl": read_stl,
     ".ply": read_ply,
     ".obj": read_obj,
-    ".vtp": read_vtp,
+    ".vtp": read_vtk_xml,
     ".vtk": read_legacy_vtk,
+    ".vtu": read_vtk_xml,
+    ".off": read_off,
+    ".3mf": read_3mf,
 }
 
 
-def _write_vtp(path: Path, mesh: Mesh, extras: VertexData) -> None:
-    # VTK is loaded only for what needs it.
-    from pinwarp.io.mesh_formats.polydata import write_vtp
+def _write_by_vtk(name: str) -> Callable[[Path, Mesh, VertexData], None]:
+    def write(path: Path, mesh: Mesh, extras: VertexData) -> None:
+        # VTK is loaded only for what needs it.
+        from pinwarp.io.mesh_formats import polydata
 
-    write_vtp(path, mesh, extras)
+        getattr(polydata, name)(path, mesh, extras)
 
-
-def _write_legacy_vtk(path: Path, mesh: Mesh, extras: VertexData) -> None:
-    from pinwarp.io.mesh_formats.polydata import write_legacy_vtk
-
-    write_legacy_vtk(path, mesh, extras)
+    return write
 
 
 _WRITERS: dict[str, Callable[[Path, Mesh, VertexData], None]] = {
     ".stl": write_stl,
     ".ply": write_ply,
     ".obj": write_obj,
-    ".vtp": _write_vtp,
-    ".vtk": _write_legacy_vtk,
+    ".vtp": _write_by_vtk("write_vtp"),
+    ".vtk": _write_by_vtk("write_legacy_vtk"),
+    ".vtu": _write_by_vtk("write_vtu"),
+    ".off": write_off,
+    ".glb": write_glb,
+    ".gltf": write_gltf,
+    ".3mf": write_3mf,
 }
 
 
@@ -101,7 +123,7 @@ def read_mesh(
     Parameters
     ----------
     path
-        The file; its suffix tells the format.
+        The file. What is in it tells the format, its suffix only where that leaves it open.
     progress
         Told the share that is done (0 ... 1) and what is going on. To cancel, let it raise:
         the exception comes out of here.
@@ -110,12 +132,14 @@ def read_mesh(
     -------
     MeshFile
         Vertices keep the order of the file. Polygons are cut into triangles; vertices that no
-        triangle uses are dropped. STL has no shared vertices: corners at one place become one.
+        triangle uses are dropped. STL has no shared vertices, and glTF splits them: corners at
+        one place become one.
 
     Raises
     ------
     FileFormatError
-        When the file is missing, cut off, damaged, of an unknown format, or not a surface.
+        When the file is missing, cut off, damaged, or not a surface; what it is instead is said
+        where that is known, and the way from there to a surface.
 
     Examples
     --------
@@ -132,11 +156,9 @@ def read_mesh(
         if progress is not None:
             progress(share, words)
 
-    read = _READERS.get(_suffix(path))
-    if read is None and not os.path.isdir(path):
-        raise _unknown_suffix(path)
     content = read_content(path, what="mesh", progress=lambda share: tell(0.3 * share, "Reading"))
-    assert read is not None, "a folder is refused above"
+    kind = kind_in(content.data, _suffix(content.path))
+    read, notes_on_kind = _reader(content, kind)
     try:
         # Numbers that are none make numpy warn; the check of the vertices refuses them in words.
         with np.errstate(invalid="ignore", over="ignore"):
@@ -144,11 +166,14 @@ def read_mesh(
             tell(0.8, "Checking triangles")
             mesh, notes = mesh_of(surface)
     except BrokenMeshError as error:
+        # What it is instead helps more than what was expected in its third line.
+        if kind is None and (instead := foreign_in(content.data)):
+            raise FileFormatError(content.path, instead) from error
         raise FileFormatError(content.path, str(error), error.line) from error
     except MeshError as error:
         raise FileFormatError(content.path, f"{error} Export the mesh again.") from error
     tell(1.0, "Done")
-    return MeshFile(content.path, mesh, content.sha256, notes)
+    return MeshFile(content.path, mesh, content.sha256, (*notes_on_kind, *notes))
 
 
 def write_mesh(path: str | Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
@@ -157,12 +182,12 @@ def write_mesh(path: str | Path, mesh: Mesh, extras: VertexData = NO_DATA) -> No
     Parameters
     ----------
     path
-        The file. All formats but STL keep double precision; STL knows only single.
+        The file. All formats keep double precision but STL and glTF, which know only single.
     mesh
         The mesh.
     extras
-        Normals (PLY, OBJ, VTP, VTK) and scalars (PLY, VTP, VTK) to go with its vertices; STL has
-        room for neither.
+        Normals (PLY, OBJ, glTF and those of VTK) and scalars (PLY and those of VTK) to go with its
+        vertices; the others have room for neither.
 
     Raises
     ------
@@ -188,6 +213,34 @@ def write_mesh(path: str | Path, mesh: Mesh, extras: VertexData = NO_DATA) -> No
             write(temporary, mesh, extras)
         except BrokenMeshError as error:
             raise FileFormatError(path, str(error)) from error
+
+
+def _reader(content: Content, found: str | None) -> tuple[_Read, tuple[str, ...]]:
+    """Return what reads a file, and what is to be said of its name."""
+    suffix = _suffix(content.path)
+    if (found or suffix) in (".glb", ".gltf"):
+        read_scene = partial(read_gltf, beside=partial(_beside, content.path))
+        return read_scene, _misnamed(suffix, found, (".glb", ".gltf"))
+    if (found or suffix) not in _READERS:
+        instead = foreign_in(content.data) or foreign_named(content.path.name)
+        raise FileFormatError(content.path, instead) if instead else _unknown_suffix(content.path)
+    read = _READERS[found or suffix]
+    return read, _misnamed(suffix, found, [x for x, other in _READERS.items() if other is read])
+
+
+def _misnamed(suffix: str, found: str | None, suffixes: Sequence[str]) -> tuple[str, ...]:
+    if found is None or suffix in suffixes:
+        return ()
+    return (f"It is a {found[1:].upper()} file, whatever its name says.",)
+
+
+def _beside(path: Path, name: str) -> bytes:
+    """Return the bytes of a file that another one names; nothing is looked for further away."""
+    if Path(name).name != name or "\\" in name or ":" in name:
+        raise BrokenMeshError(
+            f"Its numbers are in another place ({name[:60]!r}). Save it as GLB, all in one file."
+        )
+    return read_content(path.with_name(name), what="mesh").data
 
 
 def _suffix(path: str | Path) -> str:

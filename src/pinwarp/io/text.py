@@ -130,12 +130,23 @@ def stretches_of(data: bytes, begin: int = 0, first_line: int = 1) -> Iterator[L
     while begin < len(data):
         end = _LINE_END.search(data, begin + _CHUNK)
         stop = end.end() if end else len(data)
-        part = data[begin:stop]
-        if b"\r" in part:
-            part = part.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+        part = with_lf(data[begin:stop])
         yield Lines(part, first_line, stop / len(data))
         first_line += part.count(b"\n")
         begin = stop
+
+
+def with_lf(data: bytes) -> bytes:
+    r"""Return narrow text whose lines all end in LF; without a copy where they do.
+
+    Examples
+    --------
+    >>> with_lf(b"a\r\nb\rc\n")
+    b'a\nb\nc\n'
+    """
+    if b"\r" not in data:
+        return data
+    return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
 
 
 def read_text(path: str | Path, what: str, largest: int = LARGEST) -> str:

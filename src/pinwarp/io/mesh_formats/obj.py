@@ -1,7 +1,9 @@
 """Wavefront OBJ.
 
 Not VTK's reader: it splits vertices wherever faces disagree about a normal or a texture
-coordinate, so that a bone falls apart into triangles, and damaged files crash it.
+coordinate, so that a bone falls apart into triangles, and damaged files crash it. Not trimesh's:
+it reads vertex number 0, coordinates that are none and the line ends of old programs wrongly, or
+says only that an index is out of range.
 """
 
 from __future__ import annotations
@@ -17,13 +19,15 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.core.words import counted
 from pinwarp.io.mesh_formats.surface import BrokenMeshError, Report, Surface
 from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
+from pinwarp.io.text import Lines, narrow, stretches_of
 
-_VERTEX = re.compile(rb"^[ \t]*v[ \t]+([^\r\n#]*)", re.MULTILINE)
-_FACE = re.compile(rb"^[ \t]*fo?[ \t]+([^\r\n#]*)", re.MULTILINE)
-_LOOSE = re.compile(rb"^[ \t]*[lp][ \t]", re.MULTILINE)
+_VERTEX = re.compile(rb"^[ \t]*v[ \t]+([^\n#]*)", re.M | re.I)
+_FACE = re.compile(rb"^[ \t]*fo?[ \t]+([^\n#]*)", re.M | re.I)
+_LOOSE = re.compile(rb"^[ \t]*[lp][ \t]", re.M | re.I)
+_CONTINUED = re.compile(rb"\\[ \t]*(?:\r\n|\n|\r)")
 _TEXTURE_AND_NORMAL = re.compile(rb"/[^\s]*")
-_CHUNK = 1 << 20
 _ROWS = 1 << 16
+_NONE = np.empty(0, dtype=np.int64)
 
 
 def read_obj(data: bytes, report: Report) -> Surface:
@@ -52,26 +56,25 @@ def read_obj(data: bytes, report: Report) -> Surface:
     >>> read_obj(text, lambda share: None).corners.tolist()
     [0, 1, 2]
     """
-    if b"\0" in data[:4096]:
+    text = narrow(data)
+    if b"\0" in text[:4096]:
         raise BrokenMeshError("This is not an OBJ file: it is not text. Export the mesh again.")
-    # A backslash continues a line; the blank in its place keeps the line numbers nearly right.
-    text = data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ")
-    points, corners, sizes = [], [], []
-    count = loose = start = 0
-    while start < len(text):
-        end = text.find(b"\n", start + _CHUNK)
-        chunk = text[start : end + 1 if end >= 0 else len(text)]
+    if b"\\" in text:
+        # A backslash continues a line; the blank in its place keeps the line numbers nearly right.
+        text = _CONTINUED.sub(b" ", text)
+    points, corners, sizes = [np.empty((0, 3))], [_NONE], [_NONE]
+    count = loose = 0
+    for lines in stretches_of(text):
         try:
-            points.append(_vertices(chunk))
-            chunk_corners, chunk_sizes = _faces(chunk, count)
+            points.append(_vertices(lines.data))
+            chunk_corners, chunk_sizes = _faces(lines.data, count)
         except (ValueError, OverflowError) as error:
-            raise _complaint(chunk, text.count(b"\n", 0, start)) from error
+            raise _complaint(lines) from error
         corners.append(chunk_corners)
         sizes.append(chunk_sizes)
         count += len(points[-1])
-        loose += len(_LOOSE.findall(chunk))
-        start += len(chunk)
-        report(start / len(text))
+        loose += len(_LOOSE.findall(lines.data))
+        report(lines.share)
     notes = (f"{counted(loose, 'line or point', 'lines or points')} dropped.",) if loose else ()
     return Surface(np.concatenate(points), np.concatenate(corners), np.concatenate(sizes), notes)
 
@@ -84,13 +87,13 @@ def _vertices(chunk: bytes) -> NDArray[np.float64]:
 def _faces(chunk: bytes, vertices_before: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     found = _FACE.findall(chunk)
     if not found:
-        return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
+        return _NONE, _NONE
     rows = [row.split() for row in _TEXTURE_AND_NORMAL.sub(b"", b"\n".join(found)).split(b"\n")]
     sizes = np.array([len(row) for row in rows], dtype=np.int64)
     numbers = np.array(list(chain.from_iterable(rows)), dtype=np.int64)
-    if sizes.min() < 3 or not numbers.all():
+    if not numbers.all():
         raise ValueError
-    if numbers.min() > 0:
+    if (numbers > 0).all():
         return numbers - 1, sizes
     # Negative numbers count back from the vertices that came before the face.
     vertex_places = [match.start() for match in _VERTEX.finditer(chunk)]
@@ -99,9 +102,9 @@ def _faces(chunk: bytes, vertices_before: int) -> tuple[NDArray[np.int64], NDArr
     return np.where(numbers > 0, numbers - 1, numbers + np.repeat(before, sizes)), sizes
 
 
-def _complaint(chunk: bytes, lines_before: int) -> BrokenMeshError:
+def _complaint(lines: Lines) -> BrokenMeshError:
     """Find the line that could not be read."""
-    for number, line in enumerate(chunk.split(b"\n"), lines_before + 1):
+    for number, line in enumerate(lines.data.split(b"\n"), lines.first):
         try:
             _vertices(line)
         except ValueError:
@@ -112,7 +115,7 @@ def _complaint(chunk: bytes, lines_before: int) -> BrokenMeshError:
             _faces(line, 0)
         except (ValueError, OverflowError):
             return BrokenMeshError(
-                "A face needs three or more vertex numbers, counted from 1. "
+                "A face is a list of vertex numbers, counted from 1. "
                 "Repair this line or export the mesh again.",
                 number,
             )

@@ -1,30 +1,32 @@
 """PLY, ASCII and binary of either byte order.
 
 Not VTK's reader: it rounds double precision to single, reads past the end of files that were
-cut off, and crashes on damaged ones.
+cut off, and crashes on damaged ones. Not trimesh's: what was cut off is a mesh without faces there,
+numbers that are not whole become others, and text takes three times the memory.
 """
 
 from __future__ import annotations
 
-import struct
 from itertools import chain
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.words import counted
-from pinwarp.io.mesh_formats.ply_header import Element, Property, in_doubles, read_header
-from pinwarp.io.mesh_formats.surface import BrokenMeshError, Report, Surface
+from pinwarp.io.mesh_formats.ply_binary import Columns, read_element
+from pinwarp.io.mesh_formats.ply_header import Element, read_header
+from pinwarp.io.mesh_formats.surface import BrokenMeshError, Report, Surface, cut_strips
+from pinwarp.io.mesh_formats.text_rows import TextRows
 from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
+from pinwarp.io.text import narrow
 
-_CODES = {"i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I", "f4": "f", "f8": "d"}
-_CHUNK = 1 << 20
+_NONE = np.empty(0, dtype=np.int64)
+_POINTS, _FACES, _STRIPS = "vertex", "face", "tristrips"
 
-_Columns = dict[str, Any]
-"""The values of each property: an array, or a list of tuples where the rows differ in length."""
+_Polygons = tuple[NDArray[np.int64], NDArray[np.int64]]
+"""The corners of all polygons in a row, and how many each has."""
 
 
 def read_ply(data: bytes, report: Report) -> Surface:
@@ -56,142 +58,137 @@ def read_ply(data: bytes, report: Report) -> Surface:
     >>> read_ply(f"{header}end_header\n{body}".encode(), lambda share: None).sizes.tolist()
     [3]
     """
-    order, elements, begin = read_header(data)
-    body = data[begin:]
-    if order == "=":
-        # Text becomes a binary file of doubles: from here on there is one kind of PLY.
-        body = _numbers(body, report).tobytes()
-        elements = [in_doubles(element) for element in elements]
-    report(0.5)
+    data = narrow(data)
+    order, elements, begin, line = read_header(data)
     points: NDArray[np.float64] | None = None
-    polygons: tuple[NDArray[np.int64], NDArray[np.int64]] | None = None
+    polygons: dict[str, _Polygons] = {}
     notes = []
-    place = 0
+    tables: _Text | _Binary
+    tables = _Text(data, begin, line, report) if order == "=" else _Binary(data[begin:], order)
     for element in elements:
-        columns, place = _read_element(body, place, element, order)
-        if element.name == "vertex":
-            points = _points(columns)
-        elif element.name == "face":
-            polygons = _polygons(columns)
-        elif element.rows:
-            notes.append(f"{counted(element.rows, 'row')} of {element.name!r} dropped.")
+        if element.name == _POINTS:
+            points = tables.points(element)
+        elif element.name in (_FACES, _STRIPS):
+            polygons[element.name] = tables.polygons(element)
+        else:
+            tables.skip(element)
+            if element.rows:
+                notes.append(f"{counted(element.rows, 'row')} of {element.name!r} dropped.")
     report(1.0)
-    if points is None or polygons is None:
+    if points is None or not polygons:
         raise BrokenMeshError(
             "The file holds no faces, only points. Export the bone as a triangle surface."
         )
-    return Surface(points, *polygons, tuple(notes))
-
-
-def _numbers(body: bytes, report: Report) -> NDArray[np.float64]:
-    parts = []
-    start = 0
-    while start < len(body):
-        end = body.find(b"\n", start + _CHUNK)
-        chunk = body[start : end + 1 if end >= 0 else len(body)]
-        try:
-            parts.append(np.array(chunk.split(), dtype=np.float64))
-        except ValueError as error:
-            raise BrokenMeshError(
-                f"The part after the header is not all numbers: {error}. Export the mesh again."
-            ) from error
-        start += len(chunk)
-        report(0.4 * start / len(body))
-    return np.concatenate(parts) if parts else np.empty(0)
-
-
-def _read_element(body: bytes, place: int, element: Element, order: str) -> tuple[_Columns, int]:
-    """Return the columns of one element and where the next one begins."""
-    if not element.rows or not element.properties:
-        return {}, place
-    # Checked first, so that a nonsense count does not ask for nonsense memory.
-    shortest = sum(np.dtype(p.length_kind or p.kind).itemsize for p in element.properties)
-    if element.rows * shortest > len(body) - place:
-        raise _cut_off(element)
-    first, _ = _read_row(body, place, element, order)
-    # All rows are alike in nearly every file: then they are one table.
-    table = np.dtype(
-        [
-            field
-            for p, values in zip(element.properties, first, strict=True)
-            for field in _fields(p, len(values), order)
-        ]
-    )
-    if element.rows * table.itemsize <= len(body) - place:
-        rows = np.frombuffer(body, dtype=table, count=element.rows, offset=place)
-        lists = [p for p in element.properties if p.length_kind]
-        if all((rows[f"{p.name} length"] == rows[p.name].shape[1]).all() for p in lists):
-            return {p.name: rows[p.name] for p in element.properties}, place + rows.nbytes
-    found: list[list[tuple[float, ...]]] = []
-    for _ in range(element.rows):
-        row, place = _read_row(body, place, element, order)
-        found.append(row)
-    columns = zip(*found, strict=True)
-    return {
-        p.name: list(values) for p, values in zip(element.properties, columns, strict=True)
-    }, place
-
-
-def _fields(p: Property, length: int, order: str) -> list[tuple[Any, ...]]:
-    if p.length_kind is None:
-        return [(p.name, order + p.kind)]
-    return [(f"{p.name} length", order + p.length_kind), (p.name, order + p.kind, (length,))]
-
-
-def _read_row(
-    body: bytes, place: int, element: Element, order: str
-) -> tuple[list[tuple[float, ...]], int]:
-    """Return the values of one row, a tuple per property, and where the next row begins."""
-    row = []
-    for p in element.properties:
-        length = 1.0
-        room = len(body) - place
-        try:
-            if p.length_kind is not None:
-                (length,) = struct.unpack_from(order + _CODES[p.length_kind], body, place)
-                place += np.dtype(p.length_kind).itemsize
-            if not 0 <= length <= room:
-                raise _cut_off(element)
-            layout = f"{order}{int(length)}{_CODES[p.kind]}"
-            row.append(struct.unpack_from(layout, body, place))
-        except struct.error:
-            raise _cut_off(element) from None
-        place += struct.calcsize(layout)
-    return row, place
-
-
-def _cut_off(element: Element) -> BrokenMeshError:
-    return BrokenMeshError(
-        f"The header announces {element.rows:,} rows of {element.name!r}, but the file is too "
-        "short for them: it was cut off or is damaged. Export or copy it again."
+    corners, sizes = polygons.get(_FACES, (_NONE, _NONE))
+    strips = _cut(*polygons.get(_STRIPS, (_NONE, _NONE)))
+    return Surface(
+        points,
+        np.concatenate([corners, strips.ravel()]),
+        np.concatenate([sizes, np.full(len(strips), 3, dtype=np.int64)]),
+        (*notes, *tables.notes()),
     )
 
 
-def _points(columns: _Columns) -> NDArray[np.float64]:
-    if not columns:
-        return np.empty((0, 3))
-    axes = [np.asarray(columns[axis]) for axis in "xyz" if axis in columns]
-    if len(axes) < 3 or any(axis.size != len(axis) for axis in axes):
-        raise BrokenMeshError("The vertices have no x, y and z. Export the mesh again.")
-    return np.column_stack(axes).astype(np.float64)
+def _corners_of(element: Element) -> str | None:
+    """Return the name of the property that holds the corners of faces."""
+    lists = [p.name for p in element.properties if p.length_kind and p.kind[0] in "iu"]
+    known = [name for name in lists if name.startswith("vert")]
+    return next(iter([*known, *lists]), None)
 
 
-def _polygons(columns: _Columns) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    rows = columns.get("vertex_indices", columns.get("vertex_index"))
-    if rows is None:
-        return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
-    if isinstance(rows, list):
-        sizes = np.array([len(row) for row in rows], dtype=np.int64)
-        corners = np.array(list(chain.from_iterable(rows)), dtype=np.float64)
-    else:
-        # A face of one number instead of a list has one corner and is dropped later.
-        table = np.atleast_2d(rows.T).T
-        sizes = np.full(len(table), table.shape[1], dtype=np.int64)
-        corners = table.ravel()
-    # Text holds any number where a vertex number belongs; none of 2**53 or more is one.
-    if corners.dtype.kind == "f" and not (np.abs(corners) < 2**53).all():
-        raise BrokenMeshError("A face names a vertex that does not exist. Export the mesh again.")
-    return corners.astype(np.int64), sizes
+def _cut(corners: NDArray[np.int64], sizes: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Cut strips, each of which may be several with -1 between them."""
+    begins = np.zeros(len(corners) + 1, dtype=bool)
+    begins[np.cumsum(sizes) - sizes] = True
+    is_corner = corners != -1
+    strip = np.cumsum(begins[:-1] | ~is_corner)[is_corner]
+    return cut_strips(corners[is_corner], np.bincount(strip))
+
+
+class _Text:
+    """The tables of a text, row by row."""
+
+    def __init__(self, data: bytes, begin: int, line: int, report: Report) -> None:
+        self._rows = TextRows(data, begin, line, report)
+        self._notes: list[str] = []
+
+    def points(self, element: Element) -> NDArray[np.float64]:
+        names = [p.name for p in element.properties]
+        if any(p.length_kind for p in element.properties) or not {"x", "y", "z"} <= {*names}:
+            raise _no_places()
+        axes = [names.index(axis) for axis in "xyz"]
+        table = self._rows.table(element.rows, max(axes) + 1, row_width=len(names))
+        self._tell_longer(element)
+        return table[:, axes]
+
+    def polygons(self, element: Element) -> _Polygons:
+        corners = _corners_of(element)
+        if corners is None:
+            self._rows.skip(element.rows)
+            return _NONE, _NONE
+        layout = [p.length_kind is not None for p in element.properties]
+        wanted = [p.name for p in element.properties].index(corners)
+        polygons = self._rows.lists(element.rows, layout, wanted)
+        self._tell_longer(element)
+        return polygons
+
+    def skip(self, element: Element) -> None:
+        if element.properties:
+            self._rows.skip(element.rows)
+
+    def notes(self) -> list[str]:
+        left = self._rows.left_over()
+        ignored = [f"{counted(left, 'line')} below the last row ignored."] if left else []
+        return [*self._notes, *ignored]
+
+    def _tell_longer(self, element: Element) -> None:
+        if self._rows.longer:
+            rows = counted(self._rows.longer, "row")
+            self._notes.append(
+                f"{rows} of {element.name!r} longer than the header says, the rest of each ignored."
+            )
+
+
+class _Binary:
+    """The tables of a binary file."""
+
+    def __init__(self, body: bytes, order: str) -> None:
+        self._body, self._order, self._place = body, order, 0
+
+    def points(self, element: Element) -> NDArray[np.float64]:
+        columns = self._columns(element)
+        if not columns:
+            return np.empty((0, 3))
+        axes = [np.asarray(columns[axis]) for axis in "xyz" if axis in columns]
+        if len(axes) < 3 or any(axis.size != len(axis) for axis in axes):
+            raise _no_places()
+        return np.column_stack(axes).astype(np.float64)
+
+    def polygons(self, element: Element) -> _Polygons:
+        columns = self._columns(element)
+        corners = _corners_of(element)
+        if corners not in columns:
+            return _NONE, _NONE
+        rows = columns[corners]
+        if isinstance(rows, list):
+            sizes = np.array([len(row) for row in rows], dtype=np.int64)
+            return np.array(list(chain.from_iterable(rows)), dtype=np.int64), sizes
+        return rows.ravel().astype(np.int64), np.full(len(rows), rows.shape[1], dtype=np.int64)
+
+    def skip(self, element: Element) -> None:
+        self._columns(element)
+
+    def notes(self) -> list[str]:
+        left = len(self._body) - self._place
+        return [f"{counted(left, 'byte')} behind the last row ignored."] if left else []
+
+    def _columns(self, element: Element) -> Columns:
+        columns, self._place = read_element(self._body, self._place, element, self._order)
+        return columns
+
+
+def _no_places() -> BrokenMeshError:
+    return BrokenMeshError("The vertices have no x, y and z. Export the mesh again.")
 
 
 def write_ply(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:

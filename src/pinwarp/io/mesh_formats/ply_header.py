@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 
 from pinwarp.io.mesh_formats.surface import BrokenMeshError
+from pinwarp.io.text import lines_of
 
 _TYPES = {
     "char": "i1",
@@ -20,13 +21,17 @@ _TYPES = {
     "uint16": "u2",
     "int32": "i4",
     "uint32": "u4",
+    "int64": "i8",
+    "uint64": "u8",
     "float": "f4",
     "double": "f8",
     "float32": "f4",
     "float64": "f8",
 }
 _ORDERS = {"ascii": "=", "binary_little_endian": "<", "binary_big_endian": ">"}
-_END = re.compile(rb"^end_header[ \t]*(\r\n|\n|\r)", re.MULTILINE)
+_START = re.compile(rb"\s*ply[ \t]*(\r\n|\n|\r)", re.I)
+_END = rb"[\r\n]end_header[ \t]*"
+_KEYWORDS = ("format", "element", "property")
 
 
 @dataclass(frozen=True)
@@ -46,8 +51,15 @@ class Element:
     rows: int
     properties: tuple[Property, ...]
 
+    def too_short(self) -> BrokenMeshError:
+        """Return the complaint that the file ends before all rows of the table."""
+        return BrokenMeshError(
+            f"The header announces {self.rows:,} rows of {self.name!r}, but the file is too "
+            "short for them: it was cut off or is damaged. Export or copy it again."
+        )
 
-def read_header(data: bytes) -> tuple[str, list[Element], int]:
+
+def read_header(data: bytes) -> tuple[str, list[Element], int, int]:
     r"""Read the header of a PLY file.
 
     Parameters
@@ -63,6 +75,8 @@ def read_header(data: bytes) -> tuple[str, list[Element], int]:
         The tables in the order of the file.
     begin
         Where they begin.
+    line
+        The line they begin at, counted from 1.
 
     Raises
     ------
@@ -72,17 +86,21 @@ def read_header(data: bytes) -> tuple[str, list[Element], int]:
     Examples
     --------
     >>> read_header(b"ply\nformat ascii 1.0\nelement vertex 3\nend_header\n")
-    ('=', [Element(name='vertex', rows=3, properties=())], 49)
+    ('=', [Element(name='vertex', rows=3, properties=())], 49, 5)
     """
-    end = _END.search(data)
-    if not data.startswith(b"ply") or end is None:
+    start = _START.match(data)
+    # Numbers of a binary file may begin with a byte that is a line end elsewhere.
+    line_end = rb"\r" if start and start[1] == b"\r" else rb"\r?\n"
+    end = re.compile(_END + line_end, re.I).search(data)
+    if start is None or end is None:
         raise BrokenMeshError(
             "This is not a PLY file, or its header was cut off. Export the mesh again."
         )
     order = None
     elements: list[Element] = []
-    for number, line in enumerate(data[: end.start()].decode("latin-1").splitlines(), 1):
-        match line.split():
+    lines = lines_of(data[: end.end()].decode("latin-1"))
+    for number, line in enumerate(lines, 1):
+        match line.lower().split():
             case ["format", kind, *_] if kind in _ORDERS:
                 order = _ORDERS[kind]
             case ["element", name, rows] if rows.isdecimal() and rows.isascii():
@@ -93,16 +111,18 @@ def read_header(data: bytes) -> tuple[str, list[Element], int]:
                 _add(elements, Property(name, _TYPES[kind], _TYPES[length]))
             case ["property", kind, name] if elements and kind in _TYPES:
                 _add(elements, Property(name, _TYPES[kind]))
-            case [] | ["ply" | "comment" | "obj_info", *_]:
-                pass
-            case _:
+            case [keyword, *_] if keyword in _KEYWORDS:
                 raise BrokenMeshError(
-                    f"The header cannot be understood: {line[:60]!r}. Export the mesh again.",
+                    f"The header cannot be understood: {line.strip()[:60]!r}. "
+                    "Export the mesh again.",
                     number,
                 )
+            case _:
+                # Comments, also those of programs that forget to say so.
+                pass
     if order is None:
         raise BrokenMeshError("The header names no format. Export the mesh again.")
-    return order, elements, end.end()
+    return order, elements, end.end(), len(lines) + 1
 
 
 def _add(elements: list[Element], found: Property) -> None:
@@ -110,18 +130,3 @@ def _add(elements: list[Element], found: Property) -> None:
     if found.name in [p.name for p in last.properties]:
         raise BrokenMeshError(f"The header names {found.name!r} twice. Export the mesh again.")
     elements[-1] = Element(last.name, last.rows, (*last.properties, found))
-
-
-def in_doubles(element: Element) -> Element:
-    """Return the same table with every number in double precision.
-
-    Examples
-    --------
-    >>> in_doubles(Element("vertex", 3, (Property("x", "f4"),))).properties[0].kind
-    'f8'
-    """
-    return Element(
-        element.name,
-        element.rows,
-        tuple(Property(p.name, "f8", p.length_kind and "f8") for p in element.properties),
-    )

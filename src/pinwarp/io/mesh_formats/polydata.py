@@ -11,10 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonDataModel import (
+    VTK_TRIANGLE,
+    vtkCellArray,
+    vtkPointSet,
+    vtkPolyData,
+    vtkUnstructuredGrid,
+)
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter
 from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
-from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
 
 from pinwarp.core.mesh import Mesh
 from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
@@ -23,7 +29,7 @@ from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
 def cut_polygons(
     points: NDArray[np.float64], corners: NDArray[np.int64], sizes: NDArray[np.int64]
 ) -> NDArray[np.int64]:
-    """Cut polygons into triangles, also those that are not convex.
+    """Cut polygons into triangles, also those that are not convex or not flat.
 
     Parameters
     ----------
@@ -37,7 +43,7 @@ def cut_polygons(
     Returns
     -------
     ndarray
-        (t, 3) vertex numbers.
+        (t, 3) vertex numbers: of each polygon two less than it has corners.
 
     Examples
     --------
@@ -45,12 +51,28 @@ def cut_polygons(
     >>> cut_polygons(square, np.arange(4), np.array([4])).shape
     (2, 3)
     """
+    polygons = _polydata(points, corners, np.concatenate([[0], np.cumsum(sizes)]))
+    numbers = numpy_to_vtkIdTypeArray(np.arange(len(sizes)), deep=True)
+    numbers.SetName("polygon")
+    polygons.GetCellData().AddArray(numbers)
     cutter = vtkTriangleFilter()
-    cutter.SetInputData(_polydata(points, corners, np.concatenate([[0], np.cumsum(sizes)])))
+    cutter.SetInputData(polygons)
     cutter.Update()
-    cells = cutter.GetOutput().GetPolys()
-    triangles: NDArray[np.int64] = vtk_to_numpy(cells.GetConnectivityArray()).astype(np.int64)
-    return triangles.reshape(-1, 3)
+    output = cutter.GetOutput()
+    cells = output.GetPolys().GetConnectivityArray()
+    triangles: NDArray[np.int64] = vtk_to_numpy(cells).astype(np.int64).reshape(-1, 3)
+    polygon = vtk_to_numpy(output.GetCellData().GetArray("polygon"))
+    failed = np.bincount(polygon, minlength=len(sizes)) != sizes - 2
+    if not failed.any():
+        return triangles
+    # Cutting off ears gives up where a polygon is bent and leaves a hole; a fan never does.
+    counts = sizes[failed] - 2
+    steps = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+    first = np.repeat((np.cumsum(sizes) - sizes)[failed], counts)
+    fans = corners[np.column_stack([first, first + steps + 1, first + steps + 2])]
+    kept = ~failed[polygon]
+    order = np.concatenate([polygon[kept], np.repeat(np.flatnonzero(failed), counts)])
+    return np.concatenate([triangles[kept], fans])[np.argsort(order, kind="stable")]
 
 
 def write_vtp(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
@@ -79,7 +101,40 @@ def write_vtp(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     True
     """
     writer = vtkXMLPolyDataWriter()
-    _write(writer, writer.GetOutputString, path, mesh, extras)
+    _write(writer, writer.GetOutputString, path, _surface(mesh), extras)
+
+
+def write_vtu(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
+    """Write a VTU file, an unstructured grid of triangles, in double precision.
+
+    Parameters
+    ----------
+    path
+        The file.
+    mesh
+        The mesh.
+    extras
+        Normals and scalars, in single precision.
+
+    Raises
+    ------
+    OSError
+        When it cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_vtu(Path(folder, "a.vtu"), Mesh(np.eye(3), [[0, 1, 2]]))
+    ...     b'type="UnstructuredGrid"' in Path(folder, "a.vtu").read_bytes()
+    True
+    """
+    surface = _surface(mesh)
+    grid = vtkUnstructuredGrid()
+    grid.SetPoints(surface.GetPoints())
+    grid.SetCells(VTK_TRIANGLE, surface.GetPolys())
+    writer = vtkXMLUnstructuredGridWriter()
+    _write(writer, writer.GetOutputString, path, grid, extras)
 
 
 def write_legacy_vtk(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
@@ -110,11 +165,15 @@ def write_legacy_vtk(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> No
     writer = vtkPolyDataWriter()
     writer.SetFileTypeToBinary()
     writer.SetHeader("pinwarp")
-    _write(writer, writer.GetOutputStdString, path, mesh, extras)
+    _write(writer, writer.GetOutputStdString, path, _surface(mesh), extras)
 
 
 def _write(
-    writer: Any, output: Callable[[], str | bytes], path: Path, mesh: Mesh, extras: VertexData
+    writer: Any,
+    output: Callable[[], str | bytes],
+    path: Path,
+    mesh: vtkPointSet,
+    extras: VertexData,
 ) -> None:
     complaints: list[str] = []
 
@@ -124,9 +183,7 @@ def _write(
     # With an observer VTK says it to us and not to the terminal.
     complain.CallDataType = "string"  # type: ignore[attr-defined]  # how VTK is asked for the text
     writer.AddObserver("ErrorEvent", complain)
-    sizes = np.arange(0, mesh.faces.size + 1, 3)
-    surface = _polydata(mesh.vertices, mesh.faces.ravel(), sizes)
-    data = surface.GetPointData()
+    data = mesh.GetPointData()
     if extras.normals is not None:
         normals = numpy_to_vtk(np.ascontiguousarray(extras.normals, dtype=np.float32), deep=True)
         normals.SetName("Normals")
@@ -135,7 +192,7 @@ def _write(
         array = numpy_to_vtk(np.ascontiguousarray(values, dtype=np.float32), deep=True)
         array.SetName(name)
         data.AddArray(array)
-    writer.SetInputData(surface)
+    writer.SetInputData(mesh)
     # Not to the disk: where that is full, the legacy writer takes the whole program down.
     writer.WriteToOutputStringOn()
     if not writer.Write() or writer.GetErrorCode() or complaints:
@@ -144,6 +201,10 @@ def _write(
     content = output()
     # VTK hands out text where the bytes happen to be some.
     path.write_bytes(content.encode() if isinstance(content, str) else content)
+
+
+def _surface(mesh: Mesh) -> vtkPolyData:
+    return _polydata(mesh.vertices, mesh.faces.ravel(), np.arange(0, mesh.faces.size + 1, 3))
 
 
 def _polydata(

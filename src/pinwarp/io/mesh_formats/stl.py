@@ -1,7 +1,8 @@
 """STL, binary and ASCII.
 
 Not VTK's reader: it takes whatever bytes there are, so that a file which was cut off becomes
-half a bone without a word.
+half a bone without a word. Not trimesh's: what was cut off, or ends as other programs end it,
+is an empty mesh there, and text takes three times the memory.
 """
 
 from __future__ import annotations
@@ -19,15 +20,26 @@ from pinwarp.io.mesh_formats.surface import (
     BrokenMeshError,
     Report,
     Surface,
+    are_few,
     merge_equal,
 )
 from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
+from pinwarp.io.text import narrow, stretches_of
 
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-_VERTEX = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
-_FACET_END = re.compile(rb"endfacet", re.IGNORECASE)
-_CHUNK = 1 << 20
+# For text in small letters: to disregard case takes three times as long.
+_VERTEX = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)")
+_FACET_END = re.compile(rb"end[ \t]*facet")
+_SOLID_END = re.compile(rb"end[ \t]*solid")
+# A name may be any words, "vertex" among them; it ends where the first facet begins.
+_NAME = re.compile(
+    rb"^[ \t]*(?:end[ \t]*)?solid\b[^\n]*?(?=\bfacet[ \t]+normal\b|$)|^[ \t]*(?:#|//|;)[^\n]*", re.M
+)
+_WITH_NAMES = (b"solid", b"#", b"//", b";")
+_TEXT = re.compile(rb"^\s*(?:solid|facet)\b", re.I | re.M)
+_LOOKED_AT = 4096
+_TAIL = 1 << 20
 
 
 def read_stl(data: bytes, report: Report) -> Surface:
@@ -57,77 +69,93 @@ def read_stl(data: bytes, report: Report) -> Surface:
     >>> read_stl(text.encode(), lambda share: None).points.shape
     (3, 3)
     """
-    notes: tuple[str, ...] = ()
-    if _is_text(data):
-        places = _read_text(data, report)
-    else:
+    if _is_binary(data):
         places, notes = _read_binary(data)
+    else:
+        text = narrow(data)
+        places, notes = (_read_text if _is_text(text) else _read_binary)(text, report)
     report(0.4)
     # A corner that is not a number cannot be merged; -0.0 and 0.0 are one place.
-    if not np.isfinite(places).all():
-        facet = int(np.flatnonzero(~np.isfinite(places).all(axis=1))[0]) // 3
-        raise BrokenMeshError(
-            f"Facet {facet + 1} has a coordinate that is not a finite number. "
-            "Repair the mesh in the program it came from."
-        )
+    whole: NDArray[np.bool_] = np.logical_and.reduce(np.isfinite(places).reshape(-1, 9), axis=1)
+    if not whole.all():
+        broken = np.flatnonzero(~whole)
+        if not are_few(len(broken), len(whole)):
+            raise BrokenMeshError(
+                f"Facet {int(broken[0]) + 1:,} has a coordinate that is not a finite number. "
+                "Repair the mesh in the program it came from."
+            )
+        places = places.reshape(-1, 9)[whole].reshape(-1, 3)
+        notes += (f"{counted(len(broken), 'facet')} without a finite position dropped.",)
     points, corners = merge_equal(places + 0.0)
     report(1.0)
     return Surface(points, corners, np.full(len(corners) // 3, 3, dtype=np.int64), notes)
 
 
+def _is_binary(data: bytes) -> bool:
+    """Whether the file is as long as its count says; some such begin with "solid" as well."""
+    return len(data) >= _HEADER and len(data) == _HEADER + 50 * _announced(data)
+
+
+def _announced(data: bytes) -> int:
+    return int(struct.unpack_from("<I", data, 80)[0])
+
+
 def _is_text(data: bytes) -> bool:
-    if data.lstrip()[:5].lower() != b"solid":
-        return False
-    # Some exporters start the header of a binary file with "solid" as well.
-    if len(data) >= _HEADER and len(data) == _HEADER + 50 * struct.unpack_from("<I", data, 80)[0]:
-        return False
-    return b"\0" not in data[:512]
+    # The count of a binary file has a zero in it.
+    return b"\0" not in data[:512] and _TEXT.search(data[:_LOOKED_AT]) is not None
 
 
-def _read_binary(data: bytes) -> tuple[NDArray[np.float64], tuple[str, ...]]:
+def _read_binary(
+    data: bytes, _report: Report | None = None
+) -> tuple[NDArray[np.float64], tuple[str, ...]]:
     if len(data) < _HEADER:
         raise BrokenMeshError(
             "The file is too short to be an STL file: it was cut off or is something else. "
             "Export it again."
         )
-    announced = int(struct.unpack_from("<I", data, 80)[0])
+    announced = _announced(data)
     room, rest = divmod(len(data) - _HEADER, _RECORD.itemsize)
     notes: tuple[str, ...] = ()
     if announced == 0 and room and not rest:
         # Exporters that cannot seek back leave the count at zero.
-        notes = (f"The header announces no triangles; all {room:,} found were read.",)
+        found = counted(room, "triangle")
+        notes = (f"The header announces no triangles; {found} found and read.",)
         announced = room
     if announced > room:
+        if b"\0" not in data[:512]:
+            raise BrokenMeshError("This is not an STL file. Export the bone as a triangle surface.")
         raise BrokenMeshError(
             f"The header announces {counted(announced, 'triangle')}, but the file ends after "
             f"{room:,}: it was cut off, or is not an STL file. Export or copy it again."
         )
     left_over = len(data) - _HEADER - announced * _RECORD.itemsize
     if left_over:
-        notes += (f"{counted(left_over, 'byte')} after the last triangle were ignored.",)
+        notes += (f"{counted(left_over, 'byte')} after the last triangle ignored.",)
     records = np.frombuffer(data, dtype=_RECORD, count=announced, offset=_HEADER)
     return records["corners"].reshape(-1, 3).astype(np.float64), notes
 
 
-def _read_text(data: bytes, report: Report) -> NDArray[np.float64]:
-    parts = []
-    facets = start = 0
-    while start < len(data):
-        end = data.find(b"\n", start + _CHUNK)
-        chunk = data[start : end + 1 if end >= 0 else len(data)]
+def _read_text(data: bytes, report: Report) -> tuple[NDArray[np.float64], tuple[str, ...]]:
+    parts = [np.empty((0, 3))]
+    facets = 0
+    for lines in stretches_of(data):
+        text = _without_names(lines.data)
+        found = _VERTEX.findall(text)
         try:
-            found = np.array(_VERTEX.findall(chunk), dtype=np.float64)
+            parts.append(_numbers(found).reshape(-1, 3))
         except ValueError as error:
-            line = data.count(b"\n", 0, start + _first_bad_vertex(chunk)) + 1
+            line = lines.first + text.count(b"\n", 0, _first_bad_vertex(text))
             raise BrokenMeshError(
                 "A vertex needs three numbers. Repair this line or export the mesh again.", line
             ) from error
-        parts.append(found.reshape(-1, 3))
-        facets += len(_FACET_END.findall(chunk))
-        start += len(chunk)
-        report(0.3 * start / len(data))
+        facets += len(_FACET_END.findall(text))
+        report(0.3 * lines.share)
     places = np.concatenate(parts)
-    if b"endsolid" not in data[-_CHUNK:].lower():
+    # What stands behind the last facet tells whether the file is all there.
+    tail = data[-_TAIL:].replace(b"\r", b"\n").lower()
+    rest = tail[max((match.end() for match in _FACET_END.finditer(tail)), default=0) :]
+    is_ended = _SOLID_END.search(rest) is not None
+    if not is_ended and _without_names(rest).strip():
         raise BrokenMeshError(
             f"The file ends after {counted(facets, 'facet')} without 'endsolid': it was cut off. "
             "Export or copy it again."
@@ -137,13 +165,29 @@ def _read_text(data: bytes, report: Report) -> NDArray[np.float64]:
             f"{counted(facets, 'facet')} should have three vertices each, but there are "
             f"{len(places):,} vertices. Export the mesh again."
         )
-    return places
+    note = "The file ends without 'endsolid': look whether a part of the bone is missing."
+    return places, () if is_ended else (note,)
 
 
-def _first_bad_vertex(chunk: bytes) -> int:
-    for match in _VERTEX.finditer(chunk):
+def _without_names(text: bytes) -> bytes:
+    """Return the text in small letters, without names and comments."""
+    small = text.lower()
+    return _NAME.sub(b"", small) if any(word in small for word in _WITH_NAMES) else small
+
+
+def _numbers(found: list[tuple[bytes, ...]]) -> NDArray[np.float64]:
+    try:
+        return np.array(found, dtype=np.float64)
+    except ValueError:
+        # Fortran writes the exponent of a double as D.
+        fortran = [[word.replace(b"d", b"e") for word in words] for words in found]
+        return np.array(fortran, dtype=np.float64)
+
+
+def _first_bad_vertex(text: bytes) -> int:
+    for match in _VERTEX.finditer(text):
         try:
-            [float(number) for number in match.groups()]
+            _numbers([match.groups()])
         except ValueError:
             return match.start()
     return 0

@@ -42,6 +42,17 @@ class Surface:
     notes: tuple[str, ...] = ()
 
 
+def are_few(broken: int, all_of_them: int) -> bool:
+    """Whether so few are broken that the rest is still the mesh: one of a hundred.
+
+    Examples
+    --------
+    >>> are_few(1, 7000), are_few(1, 4)
+    (True, False)
+    """
+    return 100 * broken <= all_of_them
+
+
 def merge_equal(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Merge points at exactly the same place, keeping the order of their first occurrence.
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.words import counted
-from pinwarp.io.mesh_formats.surface import BrokenMeshError, Surface
+from pinwarp.io.mesh_formats.surface import BrokenMeshError, Surface, are_few
 
 
 def mesh_of(surface: Surface) -> tuple[Mesh, tuple[str, ...]]:
@@ -27,7 +28,8 @@ def mesh_of(surface: Surface) -> tuple[Mesh, tuple[str, ...]]:
     Raises
     ------
     BrokenMeshError
-        When no triangle is left, a corner does not exist, or a vertex in use is not finite.
+        When no triangle is left, a corner does not exist, or more than a few vertices are not
+        finite.
 
     Examples
     --------
@@ -46,9 +48,15 @@ def mesh_of(surface: Surface) -> tuple[Mesh, tuple[str, ...]]:
             f"{len(points):,}: the file was cut off or is damaged. Export or copy it again."
         )
     if len(sizes) and sizes.min() < 3:
-        corners = corners[np.repeat(sizes >= 3, sizes)]
         notes.append(f"{counted(int((sizes < 3).sum()), 'face')} of fewer than 3 corners dropped.")
-        sizes = sizes[sizes >= 3]
+        corners, sizes = corners[np.repeat(sizes >= 3, sizes)], sizes[sizes >= 3]
+    places: NDArray[np.bool_] = np.logical_and.reduce(np.isfinite(points), axis=1)
+    if not places.all() and not places[corners].all():
+        whole = _whole_faces(places, corners, sizes)
+        dropped = counted(int((~whole).sum()), "face")
+        broken = counted(int((~places).sum()), "vertex", "vertices")
+        notes.append(f"{broken} without a finite position dropped, with {dropped} on them.")
+        corners, sizes = corners[np.repeat(whole, sizes)], sizes[whole]
     if len(sizes) and sizes.max() > 3:
         many = counted(int((sizes > 3).sum()), "polygon")
         notes.append(f"{many} of more than 3 corners cut into triangles.")
@@ -69,13 +77,26 @@ def mesh_of(surface: Surface) -> tuple[Mesh, tuple[str, ...]]:
     used = np.zeros(len(points), dtype=bool)
     used[triangles] = True
     if not used.all():
-        notes.append(f"{counted(int((~used).sum()), 'loose point')} dropped.")
+        loose = int((~used & places).sum())
+        if loose:
+            notes.append(f"{counted(loose, 'loose point')} dropped.")
         triangles = (np.cumsum(used) - 1)[triangles]
-    broken = np.flatnonzero(used & ~np.isfinite(points).all(axis=1))
-    if len(broken):
-        vertex = int(broken[0])
+    return Mesh(points[used], triangles), tuple(notes)
+
+
+def _whole_faces(
+    places: NDArray[np.bool_], corners: NDArray[np.int64], sizes: NDArray[np.int64]
+) -> NDArray[np.bool_]:
+    """Return which faces have a finite place at every corner; where few have not, or refuse."""
+    used = np.zeros(len(places), dtype=bool)
+    used[corners] = True
+    broken = np.flatnonzero(used & ~places)
+    if not are_few(len(broken), int(used.sum())):
         raise BrokenMeshError(
-            f"Vertex {vertex + 1:,} has a coordinate that is not a finite number. "
+            f"Vertex {int(broken[0]) + 1:,} has a coordinate that is not a finite number"
+            f"{f', as have {len(broken) - 1:,} more' if len(broken) > 1 else ''}. "
             "Repair the mesh in the program it came from."
         )
-    return Mesh(points[used], triangles), tuple(notes)
+    ends = np.cumsum(places[corners])[np.cumsum(sizes) - 1]
+    whole: NDArray[np.bool_] = np.diff(ends, prepend=0) == sizes
+    return whole

@@ -18,6 +18,8 @@ from pinwarp.io.mesh_formats.surface import (
     Surface,
     cut_strips,
 )
+from pinwarp.io.mesh_formats.vtk_cells import faces_of_cells
+from pinwarp.io.text import narrow, with_lf
 
 _TYPES = {
     "float": ">f4",
@@ -35,13 +37,23 @@ _TYPES = {
     "vtktypeint64": ">i8",
 }
 _OPENING = re.compile(
-    rb"# vtk DataFile Version (\d+)\.\d+[^\n]*\n[^\n]*\n\s*(ASCII|BINARY)\s", re.I
+    rb"\s*# vtk DataFile Version (\d+)\.\d+"
+    + 2 * rb"[^\r\n]*(?:\r\n|\n|\r)"
+    + rb"\s*(ASCII|BINARY)\s",
+    re.I,
 )
-_KEYWORDS = rb"POINTS|VERTICES|LINES|POLYGONS|TRIANGLE_STRIPS|POINT_DATA|CELL_DATA"
+_KEYWORDS = rb"POINTS|VERTICES|LINES|POLYGONS|TRIANGLE_STRIPS|CELLS|CELL_TYPES|POINT_DATA|CELL_DATA"
+_OTHER_KINDS = {
+    "STRUCTURED_POINTS": "an image volume",
+    "STRUCTURED_GRID": "a structured grid",
+    "RECTILINEAR_GRID": "a rectilinear grid",
+    "FIELD": "a table",
+}
 _NEXT = re.compile(
     rb"^[ \t]*(?:" + _KEYWORDS + rb"|METADATA|FIELD|OFFSETS|CONNECTIVITY)\b", re.MULTILINE | re.I
 )
 _CHUNK = 1 << 20
+_NONE = np.empty(0, dtype=np.int64)
 
 
 @dataclass
@@ -105,7 +117,7 @@ def cut_off() -> BrokenMeshError:
 
 
 def read_legacy_vtk(data: bytes, report: Report) -> Surface:
-    r"""Read the polygons and triangle strips of a legacy VTK file; data arrays are left out.
+    r"""Read a surface or an unstructured grid with faces; data arrays are left out.
 
     Parameters
     ----------
@@ -131,27 +143,40 @@ def read_legacy_vtk(data: bytes, report: Report) -> Surface:
     >>> read_legacy_vtk(text.encode(), lambda share: None).corners.tolist()
     [0, 1, 2]
     """
+    data = narrow(data)
     opening = _OPENING.match(data)
     if opening is None:
         raise BrokenMeshError("This is not a VTK file. Export the mesh again.")
     is_new = int(opening[1]) >= 5
-    file = _File(data, opening[2].upper() == b"ASCII", opening.end(), report)
+    is_text = opening[2].upper() == b"ASCII"
+    if is_text:
+        data = with_lf(data)
+        opening = _OPENING.match(data)
+        assert opening is not None, "it has the same words"
+    file = _File(data, is_text, opening.end(), report)
     points = np.empty((0, 3))
-    none = np.empty(0, dtype=np.int64)
-    cells = {"POLYGONS": (none, none), "TRIANGLE_STRIPS": (none, none), "LINES": (none, none)}
+    cells = dict.fromkeys(("POLYGONS", "TRIANGLE_STRIPS", "LINES", "CELLS"), (_NONE, _NONE))
+    kinds = _NONE
     while words := file.words():
         match [words[0].upper(), *words[1:]]:
             case ["DATASET", kind, *_]:
-                if kind.upper() != "POLYDATA":
+                if kind.upper() not in ("POLYDATA", "UNSTRUCTURED_GRID"):
+                    what = _OTHER_KINDS.get(kind.upper(), f"data of the kind {kind[:40]!r}")
                     raise BrokenMeshError(
-                        f"The file holds a {kind[:40].lower()} and not a surface. "
+                        f"The file holds {what} and not a surface. "
                         "Extract the surface and save it as PolyData."
                     )
             case ["POINTS", count, kind]:
                 points = file.array(3 * _number(count), kind).reshape(-1, 3).astype(np.float64)
-            case ["VERTICES" | "LINES" | "POLYGONS" | "TRIANGLE_STRIPS" as name, first, second]:
+            case [
+                "VERTICES" | "LINES" | "POLYGONS" | "TRIANGLE_STRIPS" | "CELLS" as name,
+                first,
+                second,
+            ]:
                 read = _new_cells if is_new else _old_cells
                 cells[name] = read(file, _number(first), _number(second))
+            case ["CELL_TYPES", count]:
+                kinds = file.array(_number(count), "int").astype(np.int64)
             case ["METADATA"]:
                 # Ends at a blank line.
                 end = re.compile(rb"\n[ \t\r]*\n").search(data, max(file.place - 1, 0))
@@ -168,12 +193,13 @@ def read_legacy_vtk(data: bytes, report: Report) -> Surface:
     report(1.0)
     corners, sizes = cells["POLYGONS"]
     strips = cut_strips(*cells["TRIANGLE_STRIPS"])
+    faces, face_sizes, notes = faces_of_cells(kinds, *cells["CELLS"])
     lines = len(cells["LINES"][1])
     return Surface(
         points,
-        np.concatenate([corners, strips.ravel()]),
-        np.concatenate([sizes, np.full(len(strips), 3, dtype=np.int64)]),
-        (f"{counted(lines, 'line')} dropped.",) if lines else (),
+        np.concatenate([corners, strips.ravel(), faces]),
+        np.concatenate([sizes, np.full(len(strips), 3, dtype=np.int64), face_sizes]),
+        (*((f"{counted(lines, 'line')} dropped.",) if lines else ()), *notes),
     )
 
 
