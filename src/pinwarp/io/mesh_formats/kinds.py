@@ -156,7 +156,7 @@ _FOREIGN = (
     _Foreign(
         "a file of VTK that is no surface",
         _PARAVIEW,
-        _starts(rb"[^\0]*?<VTKFile\b"),
+        _starts(rb"[^\0]*?<VTKFile[^>]*\btype="),
         (".vti", ".vts", ".vtr", ".vtm", ".pvtp", ".pvtu", ".pvd"),
     ),
     _Foreign(

@@ -17,7 +17,8 @@ from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
 from pinwarp.io.text import lines_of, narrow
 
 # Texture, colour and normal come behind the three coordinates of a vertex.
-HEAD = re.compile(rb"(?:\s|#[^\r\n]*[\r\n])*(?:ST)?C?N?(4?n?)OFF\b([ \t]+BINARY)?", re.I)
+# A small n stands for their dimension.
+HEAD = re.compile(rb"(?:\s|#[^\r\n]*[\r\n])*(?:ST|st)?[Cc]?N?(4?n?)(?:OFF|off)\b([ \t]+BINARY)?")
 _ROWS = 1 << 16
 
 

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from pinwarp.io.mesh_formats.allowance import Allowance
 from pinwarp.io.mesh_formats.surface import BrokenMeshError
 
-# What a part costs that has nothing in it: scenes can repeat them a billion times.
-_OF_A_PART = 1000
+MOST = 10_000
+"""More parts than any bone has; scenes can repeat one a billion times."""
 
 
 class Parts:
@@ -34,6 +34,7 @@ class Parts:
         self._points: list[NDArray[np.float64]] = []
         self._triangles: list[NDArray[np.int64]] = []
         self._count = 0
+        self._looked_at = 0
 
     def __len__(self) -> int:
         return len(self._points)
@@ -46,7 +47,11 @@ class Parts:
         BrokenMeshError
             When there are too many.
         """
-        self._allowance.take(_OF_A_PART)
+        self._looked_at += 1
+        if self._looked_at > MOST:
+            raise BrokenMeshError(
+                f"It has more than {MOST:,} parts, which are no bone. Export the bone alone."
+            )
 
     def add(
         self,
