@@ -16,7 +16,7 @@ from pinwarp.io.atomic import write_atomically
 from pinwarp.io.coefficients import COEFFICIENT_SUFFIXES, write_coefficients
 from pinwarp.io.landmark_files import write_landmarks
 from pinwarp.io.mesh_formats.vertex_data import NO_DATA
-from pinwarp.io.meshes import NORMALS_SUFFIXES, SCALARS_SUFFIXES, write_mesh
+from pinwarp.io.meshes import MESH_SUFFIXES, NORMALS_SUFFIXES, SCALARS_SUFFIXES, write_mesh
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.mesh_data import warped_mesh_data
 from pinwarp.session.outputs.exports import (
@@ -216,7 +216,9 @@ class Exports(Capability):
     def ask_and_export_mesh(self) -> None:
         """Ask for a file and write the warped source mesh, in double precision."""
         source = self._editor.committed.source
-        suffix = source.path.suffix if source is not None else ".stl"
+        suffix = source.path.suffix if source is not None else ""
+        # The name of a mesh need not say what is in it.
+        suffix = suffix if suffix.lower() in MESH_SUFFIXES else ".stl"
         proposal = self._tasks.folder() / f"{self._stem}_warped{suffix}"
         path = self._tasks.dialogs.ask_save("Export the warped mesh", MESH_FILES, proposal)
         if path is not None:

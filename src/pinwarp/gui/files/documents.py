@@ -24,7 +24,7 @@ from pinwarp.gui.tasks.file_tasks import (
     SESSION_FILES,
     FileTasks,
 )
-from pinwarp.io.file_names import SESSION_SUFFIX, is_backup, is_session, session_name
+from pinwarp.io.file_names import is_backup, is_session, session_name
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
 from pinwarp.io.meshes import MESH_SUFFIXES, MeshFile
 from pinwarp.io.reading import hash_of
@@ -217,21 +217,14 @@ class Documents(Capability):
             if self._saving.may_lose_changes():
                 self.open_session(sessions[0])
             return
-        meshes = [path for path in paths if path.suffix.lower() in MESH_SUFFIXES]
+        landmarks = [path for path in paths if _is_landmarks(path)]
+        # What is neither is told by what is in it, when it is read.
+        meshes = [path for path in paths if path not in landmarks]
         # A second mesh belongs to the other side.
         for mesh_side, path in zip((side, side.other), meshes, strict=False):
             self.open_mesh(mesh_side, path)
-        others = [path for path in paths if path not in meshes]
-        for path in others:
-            if path.name.lower().endswith(LANDMARK_SUFFIXES):
-                self._imports.bring_in(path, side)
-            else:
-                suffixes = ", ".join(MESH_SUFFIXES)
-                self._tasks.dialogs.tell_error(
-                    "Cannot open this file",
-                    f"{path.name} is neither a mesh ({suffixes}) nor landmarks "
-                    f"({', '.join(LANDMARK_SUFFIXES)}) nor a session ({SESSION_SUFFIX}).",
-                )
+        for path in landmarks:
+            self._imports.bring_in(path, side)
 
     def ask_and_open_mesh(self, side: Side) -> None:
         """Ask for a mesh and open it."""
@@ -337,10 +330,17 @@ class Documents(Capability):
         self._meshes.open(record, path.parent, f"Opening {path.name}", arrived)
 
 
+def _is_landmarks(path: Path) -> bool:
+    is_mesh = path.suffix.lower() in MESH_SUFFIXES
+    return not is_mesh and path.name.lower().endswith(LANDMARK_SUFFIXES)
+
+
 def _mesh_summary(file: MeshFile) -> str:
-    mesh = file.mesh
-    text = f"{file.path.name}: {len(mesh.vertices):,} vertices, {len(mesh.faces):,} triangles"
-    return "; ".join((text, *file.notes))
+    vertices = counted(len(file.mesh.vertices), "vertex", "vertices")
+    triangles = counted(len(file.mesh.faces), "triangle")
+    text = f"{file.path.name}: {vertices}, {triangles}"
+    # All of it stands by the mesh's name, too.
+    return ". ".join((text, " ".join(file.notes))) if file.notes else text
 
 
 def _by(factor: float) -> str:

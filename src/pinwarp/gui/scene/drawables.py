@@ -321,10 +321,11 @@ class Legend:
 
 @dataclass(frozen=True)
 class Caption:
-    """Which side this is, and which file is shown."""
+    """Which side this is, which file is shown, and what was left out of that."""
 
     title: str
     file: str = ""
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

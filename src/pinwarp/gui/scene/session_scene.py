@@ -63,7 +63,8 @@ def session_drawables(
     markers = _markers(side, session, selection, view, result)
     is_empty = mesh is None and not carried and not markers
     words = _file_words(file) if file is not None else "" if is_empty else _NO_MESH[side]
-    yield Caption(side.value.capitalize(), words)
+    notes = file.notes if isinstance(file, MeshFile) else ()
+    yield Caption(side.value.capitalize(), words, notes)
     if mesh is not None:
         yield Bone(mesh, view.wireframe)
     elif is_empty:

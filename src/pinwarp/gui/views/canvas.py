@@ -18,10 +18,19 @@ from pinwarp.gui.drawn.scene import DrawnScene
 from pinwarp.gui.drawn.section import Section
 from pinwarp.gui.drawn.surface import Surface
 from pinwarp.gui.drawn.surfaces import Surfaces
+from pinwarp.gui.painted.file_notes import FileNotes
 from pinwarp.gui.painted.legend import PaintedLegend
 from pinwarp.gui.painted.marker_layer import MarkerLayer
 from pinwarp.gui.scene.camera_pose import Matrix, Pose, best_frame, fitted
-from pinwarp.gui.scene.drawables import Drawable, GridLines, Legend, Markers, Motion, Overlay
+from pinwarp.gui.scene.drawables import (
+    Caption,
+    Drawable,
+    GridLines,
+    Legend,
+    Markers,
+    Motion,
+    Overlay,
+)
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.scene.sight import through_ball
 from pinwarp.gui.style import theme
@@ -60,6 +69,7 @@ class Canvas(SightedView):
         self.layer = MarkerLayer(self, self)
         self.map_legend = PaintedLegend(self)
         self.layer.give_way_to(self.map_legend)
+        self.file_notes = FileNotes(self)
         self._full_frame_seconds = 0.0
         self._orbiting = False
         self.set_background(theme.BACKGROUND_BOTTOM, top=theme.BACKGROUND_TOP)
@@ -86,6 +96,8 @@ class Canvas(SightedView):
             self.map_legend.show_content(scene.of(Legend))
             # Labels give way to it.
             self.layer.update()
+        caption = scene.of(Caption)
+        self.file_notes.show_notes(caption.notes if caption is not None else ())
         if self.surface is not surface:
             self._full_frame_seconds = 0.0
             self.look_at_all()
@@ -335,3 +347,4 @@ class Canvas(SightedView):
         super().resizeEvent(event)
         self.layer.resize(event.size())
         self.map_legend.place()
+        self.file_notes.place()
