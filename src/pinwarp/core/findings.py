@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import IntEnum, StrEnum
 from typing import Protocol, TypeVar
 
-from pinwarp.core.words import listed
+from pinwarp.core.words import counted, listed
 
 
 class Severity(IntEnum):
@@ -46,6 +46,7 @@ class FindingKind(StrEnum):
     ISOLATED = "isolated"
     SWAPPED = "swapped"
     MIRRORED = "mirrored"
+    SUGGESTED = "suggested"
 
     @property
     def severity(self) -> Severity:
@@ -53,7 +54,12 @@ class FindingKind(StrEnum):
         match self:
             case FindingKind.ISOLATED:
                 return Severity.REMARK
-            case FindingKind.CLOSE | FindingKind.NEARLY_PLANAR | FindingKind.POLE:
+            case (
+                FindingKind.CLOSE
+                | FindingKind.NEARLY_PLANAR
+                | FindingKind.POLE
+                | FindingKind.SUGGESTED
+            ):
                 return Severity.WARNING
             case _:
                 return Severity.WRONG
@@ -76,10 +82,11 @@ class Finding:
         fold the number of its vertices. For inconsistent landmarks their distance on the source,
         for a suspect its standardised leave-one-out error, for an isolated landmark the distance
         to the nearest, for swapped or mirrored ones the share of the error that is left when that
-        is put right.
+        is put right, for suggested destinations how many there are.
     others
         Further figures: for inconsistent landmarks their distance on the destination, for a
-        suspect or isolated landmark its leave-one-out error (mesh units).
+        suspect or isolated landmark its leave-one-out error (mesh units), for suggested
+        destinations of how many they are.
     """
 
     kind: FindingKind
@@ -162,6 +169,12 @@ class Finding:
                 return (
                     "The destination looks like a mirror image of the source: "
                     "are they a left and a right bone?"
+                )
+            case FindingKind.SUGGESTED:
+                verb, each = ("is", "it") if self.value == 1 else ("are", "each")
+                return (
+                    f"{self.value:.0f} of {counted(int(self.others[0]), 'destination landmark')} "
+                    f"{verb} only suggested: look at {each}."
                 )
 
 

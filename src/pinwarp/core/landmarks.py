@@ -14,6 +14,10 @@ from pinwarp.core.errors import LandmarkError
 
 Position = tuple[float, float, float]
 
+# What a note says of a destination that nobody has looked at yet, beside what else it says.
+SUGGESTED = "suggested"
+_BETWEEN_REMARKS = ";"
+
 
 class Side(StrEnum):
     """Which of the two meshes a position is on.
@@ -50,6 +54,7 @@ class LandmarkState(StrEnum):
     """How far a landmark has come; every state is drawn with its own shape."""
 
     PAIRED = "paired"
+    SUGGESTED = "suggested"
     SOURCE_ONLY = "source only"
     DESTINATION_ONLY = "destination only"
     EMPTY = "not placed"
@@ -72,7 +77,8 @@ class Landmark:
     enabled
         A disabled pair is kept but does not take part.
     note
-        Free text.
+        Free text. Its remark "suggested", alone or behind a semicolon, says that nobody has looked
+        at the destination yet.
     extra
         Columns of a session file that this version does not know, kept as they came.
     locked
@@ -139,6 +145,39 @@ class Landmark:
         )
 
     @property
+    def is_suggested(self) -> bool:
+        """Whether its destination was only suggested, and nobody has looked at it yet."""
+        return (
+            self.destination is not None
+            # In two steps: it is asked of every landmark at every frame.
+            and SUGGESTED in self.note
+            and SUGGESTED in self._remarks()
+        )
+
+    def suggested(self, position: Iterable[float]) -> Landmark:
+        """Return it with a destination that is only suggested; what its note says is kept.
+
+        Examples
+        --------
+        >>> fovea = Landmark("fovea", source=(0, 0, 0), note="deep").suggested((1, 0, 0))
+        >>> fovea.note, fovea.state.value, fovea.confirmed().note
+        ('deep; suggested', 'suggested', 'deep')
+        """
+        placed = self.placed(Side.DESTINATION, position)
+        remarks = [*placed.confirmed()._remarks(), SUGGESTED]
+        return replace(placed, note=f"{_BETWEEN_REMARKS} ".join(remarks))
+
+    def confirmed(self) -> Landmark:
+        """Return it with the destination that it has, looked at by somebody."""
+        if SUGGESTED not in self._remarks():
+            return self
+        remarks = [remark for remark in self._remarks() if remark != SUGGESTED]
+        return replace(self, note=f"{_BETWEEN_REMARKS} ".join(remarks))
+
+    def _remarks(self) -> list[str]:
+        return [remark for part in self.note.split(_BETWEEN_REMARKS) if (remark := part.strip())]
+
+    @property
     def state(self) -> LandmarkState:
         """How far it has come."""
         if self.role is Role.PASSENGER:
@@ -147,7 +186,7 @@ class Landmark:
             return LandmarkState.DISABLED
         match self.source is not None, self.destination is not None:
             case True, True:
-                return LandmarkState.PAIRED
+                return LandmarkState.SUGGESTED if self.is_suggested else LandmarkState.PAIRED
             case True, False:
                 return LandmarkState.SOURCE_ONLY
             case False, True:

@@ -13,6 +13,7 @@ from pinwarp.session.session import Session
 
 __all__ = [
     "add_passenger",
+    "confirm",
     "move",
     "next_name",
     "next_to_place",
@@ -88,12 +89,31 @@ def add_passenger(session: Session, position: Position) -> tuple[Session, str]:
 
 
 def move(session: Session, name: str, side: Side, position: Position) -> Session:
-    """Put one side of a landmark somewhere."""
-    return changed(session, name, lambda landmark: landmark.placed(side, position))
+    """Put one side of a landmark somewhere; a destination is no longer only suggested then."""
+    return changed(session, name, lambda landmark: _put(landmark, side, position))
+
+
+def confirm(session: Session, name: str) -> Session:
+    """Say that somebody has looked at a destination that was only suggested.
+
+    Examples
+    --------
+    >>> session = Session(landmarks=(Landmark("a", (0, 0, 0)).suggested((1, 0, 0)),))
+    >>> confirm(session, "a").landmark("a").state.value
+    'paired'
+    """
+    return changed(session, name, Landmark.confirmed)
+
+
+def _put(landmark: Landmark, side: Side, position: Position | None) -> Landmark:
+    placed = landmark.placed(side, position)
+    return placed.confirmed() if side is Side.DESTINATION else placed
 
 
 def swap_destinations(session: Session, name: str, other: str) -> Session:
     """Exchange the destinations of two landmarks, as when they were clicked in the wrong order.
+
+    What was only suggested stays so, for the other landmark.
 
     Examples
     --------
@@ -102,19 +122,22 @@ def swap_destinations(session: Session, name: str, other: str) -> Session:
     >>> swap_destinations(session, "a", "b").landmark("a").destination
     (2.0, 0.0, 0.0)
     """
-    there = {
-        name: existing(session, other).destination,
-        other: existing(session, name).destination,
-    }
-    return all_changed(
-        session, there, lambda landmark: landmark.placed(Side.DESTINATION, there[landmark.name])
-    )
+    there = {name: existing(session, other), other: existing(session, name)}
+
+    def swapped(landmark: Landmark) -> Landmark:
+        given = there[landmark.name]
+        place = given.destination
+        if place is not None and given.is_suggested:
+            return landmark.suggested(place)
+        return _put(landmark, Side.DESTINATION, place)
+
+    return all_changed(session, there, swapped)
 
 
 def remove_side(session: Session, name: str, side: Side) -> Session:
     """Remove one position; a landmark that had no other goes too, unless somebody named it."""
     landmark = existing(session, name)
-    bare = landmark.placed(side, None)
+    bare = _put(landmark, side, None)
     nothing_left = bare.source is None and bare.destination is None
     # Nobody chose that name: such a landmark may go with its last side.
     if nothing_left and is_automatic(name) and not landmark.note:

@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from pinwarp.core.findings import Severity, gravest_first
+from pinwarp.core.findings import FindingKind, Severity, gravest_first
 from pinwarp.core.groups import Curve
 from pinwarp.core.lengths import rms
 from pinwarp.core.names import look_alike_notes
 from pinwarp.core.surface_distance import DistanceFigures
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session.judging.quality import NamedFinding, named_findings, quality_of
+from pinwarp.session.judging.suggested import about_suggested
 from pinwarp.session.session import Session
 from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date
 from pinwarp.session.warp.result import WarpResult
@@ -127,6 +128,12 @@ class Check:
         return sum(group.freed for group in self.groups) if self.groups else None
 
     @property
+    def suggested(self) -> int:
+        """How many destinations were only suggested: nobody has looked at them yet."""
+        kind = FindingKind.SUGGESTED
+        return sum(len(found.names) for found in self.findings if found.finding.kind is kind)
+
+    @property
     def is_flagged(self) -> bool:
         """Whether anything should be put right before the warp is used."""
         return any(named.severity is Severity.WRONG for named in self.findings)
@@ -142,6 +149,7 @@ class Check:
             "folded_vertices": self.folded_vertices,
             "distance": None if self.distance is None else asdict(self.distance),
             "fitted": self.fitted,
+            "suggested": self.suggested,
             "findings": [
                 {
                     "kind": named.finding.kind.value,
@@ -192,7 +200,7 @@ def check(session: Session | SolvedWarp) -> Check:
         unknown if left_out is None else left_out.standardised,
     )
     folds, distances = warp.folds, warp.distances()
-    findings = [*quality.findings_in(session)]
+    findings = [*quality.findings_in(session), *about_suggested(session)]
     if folds is not None:
         patches = (patch.finding for patch in folds.patches)
         findings += named_findings(patches, result.inputs, session)

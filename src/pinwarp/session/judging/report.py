@@ -20,6 +20,7 @@ from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.io.report import Report, ReportRow
 from pinwarp.session.judging.check import groups_of
 from pinwarp.session.judging.quality import Quality, quality_of
+from pinwarp.session.judging.suggested import about_suggested
 from pinwarp.session.session import Session
 from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date, refinement_in_use
 from pinwarp.session.warp.result import WarpResult
@@ -83,7 +84,8 @@ def report_of(
     folds, compared = warp.folds, warp.comparison
     patches = () if folds is None else (patch.finding for patch in folds.patches)
     # Folds come behind what causes them, what is only isolated last.
-    found = gravest_first((*quality.findings, *patches))
+    suggested = (named.finding for named in about_suggested(session))
+    found = gravest_first((*quality.findings, *suggested, *patches))
     return Report(
         title=title,
         made=f"Made by pinwarp {__version__} on {made:%d %B %Y at %H:%M} "
@@ -125,7 +127,7 @@ def _facts(session: Session, result: WarpResult) -> tuple[tuple[str, str], ...]:
     unit = session.unit
     facts = [(f"{side.value.capitalize()} mesh", _mesh_text(session, side)) for side in Side]
     facts += [
-        ("Pairs", f"{len(session.pairs)} of {len(session.landmarks)} landmarks"),
+        ("Pairs", _pairs_text(session)),
         ("Unit", unit),
         *settings_in_words(session.settings, unit),
     ]
@@ -141,6 +143,12 @@ def _facts(session: Session, result: WarpResult) -> tuple[tuple[str, str], ...]:
     if result.rms_residual is not None:
         facts.append(("RMS residual", f"{result.rms_residual:.4g} {unit}"))
     return tuple(facts)
+
+
+def _pairs_text(session: Session) -> str:
+    suggested = sum(pair.is_suggested for pair in session.pairs)
+    only = f", {suggested} of them only suggested" if suggested else ""
+    return f"{len(session.pairs)} of {len(session.landmarks)} landmarks{only}"
 
 
 def _fitted_text(refined: RefinementRecord, pairs: int, unit: str) -> str:
