@@ -14,7 +14,8 @@ from pinwarp.core.folds import folds_of
 from pinwarp.core.jacobian import determinants, jacobians
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.readiness import InsideOutError
-from pinwarp.core.refinement import RefinementSettings, refine
+from pinwarp.core.refinement import refine
+from pinwarp.core.refinement_inputs import RefinementSettings
 from pinwarp.core.sampling import even_places
 from pinwarp.core.spline import solve
 from pinwarp.core.surface_distance import SurfaceIndex

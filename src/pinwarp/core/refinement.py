@@ -35,15 +35,14 @@ from pinwarp.core.conditions import (
     held_across,
     held_along,
 )
-from pinwarp.core.curves import CurvePath
-from pinwarp.core.errors import LandmarkError
 from pinwarp.core.features import FEWEST_PLACES, levels_to, places_for
 from pinwarp.core.fold_control import FoldControl
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.positions import as_positions
 from pinwarp.core.readiness import check_facing, starting_warp
+from pinwarp.core.refinement_inputs import DrawnPoints, RefinementSettings, Start
 from pinwarp.core.sampling import spread_places, triangle_areas
-from pinwarp.core.spline import Spline, check_penalty
+from pinwarp.core.spline import Spline
 from pinwarp.core.surface import Places, Surface, carried_normals
 
 Matrix = NDArray[np.float64]
@@ -64,54 +63,6 @@ FACING_ALIKE = 0.5
 STIFFEN, STIFFEST = 4.0, 1e4
 REACH, WIDEN = 1.5, 1.35
 STIFFENINGS = 8
-
-
-@dataclass(frozen=True)
-class RefinementSettings:
-    """How a warp is refined.
-
-    Parameters
-    ----------
-    smallest_feature
-        Only what is larger is bent, in source mesh units; None takes what 1200 places resolve.
-    landmark_tolerance
-        A penalty of the landmarks, a length in source mesh units: 0 meets each of them.
-    turn_destination
-        Whether the destination is taken to face the other way: it, or the source, is inside out.
-
-    Raises
-    ------
-    LandmarkError
-        When the smallest feature is no length.
-    PenaltyError
-        When the tolerance is none.
-    """
-
-    smallest_feature: float | None = None
-    landmark_tolerance: float = 0.0
-    turn_destination: bool = False
-
-    def __post_init__(self) -> None:
-        feature = self.smallest_feature
-        if feature is not None and not (feature > 0 and np.isfinite(feature)):
-            raise LandmarkError(f"The smallest feature is {feature}; it must be longer than 0.")
-        check_penalty(self.landmark_tolerance)
-
-
-@dataclass(frozen=True, eq=False)
-class DrawnPoints:
-    """Points of a curve that somebody drew on both surfaces.
-
-    Attributes
-    ----------
-    source : (k, 3) float64
-        In their order on the source, landmarks not among them.
-    path
-        The curve on the destination.
-    """
-
-    source: Matrix
-    path: CurvePath
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,12 +135,13 @@ class Refinement:
 
 def refine(
     source: Mesh,
-    destination: Mesh,
+    destination: Mesh | Surface,
     source_landmarks: ArrayLike,
     destination_landmarks: ArrayLike,
     settings: RefinementSettings | None = None,
     *,
     curves: Sequence[DrawnPoints] = (),
+    start: Start | None = None,
     told: Callable[[Level], None] = lambda _level: None,
     progress: Callable[[float, str], None] = lambda _share, _words: None,
 ) -> Refinement:
@@ -201,14 +153,18 @@ def refine(
     Parameters
     ----------
     source, destination
-        The surfaces; holes and rims, several parts and edges shared by three triangles do.
+        The surfaces; holes and rims, several parts and edges shared by three triangles do. The
+        destination may have been made ready to be searched already.
     source_landmarks, destination_landmarks
-        (n, 3) row by row the same places; at least four, not in one plane.
+        (n, 3) row by row the same places; at least four, not in one plane, unless there is a
+        ``start``.
     settings
         How.
     curves
         Points of curves that somebody drew on both surfaces: they stay on their curve, within the
         tolerance of the landmarks.
+    start
+        Where to begin; without it with the warp of the landmarks.
     told
         Called after each level.
     progress
@@ -240,10 +196,20 @@ def refine(
     True
     """
     settings = settings or RefinementSettings()
+    surface = destination if isinstance(destination, Surface) else Surface(destination)
     if settings.turn_destination:
-        destination = Mesh(destination.vertices, destination.faces[:, ::-1])
+        surface = Surface(Mesh(surface.mesh.vertices, surface.mesh.faces[:, ::-1]))
+    if start is None:
+        spline = starting_warp(source_landmarks, destination_landmarks, settings.landmark_tolerance)
+        start = Start(spline, np.zeros((0, 3)), 0.0)
     run = _Run(
-        source, Surface(destination), source_landmarks, destination_landmarks, settings, curves
+        source,
+        surface,
+        as_positions(source_landmarks, "source landmark"),
+        as_positions(destination_landmarks, "destination landmark"),
+        settings,
+        curves,
+        start,
     )
     levels: list[Level] = []
     for number, feature in enumerate(run.features, 1):
@@ -266,7 +232,7 @@ def refine(
         told(level)
     return Refinement(
         spline=run.good,
-        landmarks=len(run.first.source),
+        landmarks=run.landmarks,
         places=len(run.places),
         smallest_feature=run.features[-1],
         levels=tuple(levels),
@@ -281,22 +247,24 @@ class _Run:
         self,
         source: Mesh,
         surface: Surface,
-        source_landmarks: ArrayLike,
-        destination_landmarks: ArrayLike,
+        source_landmarks: Matrix,
+        destination_landmarks: Matrix,
         settings: RefinementSettings,
         curves: Sequence[DrawnPoints],
+        start: Start,
     ) -> None:
         self.curves = curves
         on_curves = [np.zeros((0, 3)), *(curve.source for curve in curves)]
         self.on_curves = np.vstack(on_curves)
-        self.first = starting_warp(
-            source_landmarks, destination_landmarks, settings.landmark_tolerance
-        )
-        self.destination = as_positions(destination_landmarks, "destination landmark")
+        self.first, self.landmarks = start.spline, len(source_landmarks)
+        self.held = np.vstack([source_landmarks, start.loose])
+        self.destination = np.vstack([destination_landmarks, self.first.evaluate(start.loose)])
         self.surface, self.tolerance = surface, settings.landmark_tolerance
+        counts = 3 * self.landmarks, 3 * len(start.loose)
+        self.penalties = np.repeat([self.tolerance, start.penalty], counts)
         self.area = float(triangle_areas(source).sum())
         count = places_for(self.area, settings.smallest_feature)
-        taken = np.vstack([self.first.source, self.on_curves])
+        taken = np.vstack([source_landmarks, self.on_curves])
         positions, triangles = spread_places(source, count, taken)
         self.places = Surface(source).at(triangles, positions)
         self.spacing = float(np.sqrt(self.area / count))
@@ -339,7 +307,7 @@ class _Run:
             held_along(second + np.arange(self.kept), met.normals[kept]),
         ]
         factor = factorise_conditions(
-            np.vstack([self.first.source, self.on_curves, self.places.positions[kept]]),
+            np.vstack([self.held, self.on_curves, self.places.positions[kept]]),
             Conditions.joined(conditions),
         )
         aims = np.vstack([self.destination, along, met.positions[kept]])
@@ -366,8 +334,9 @@ class _Run:
 
     def _solved(self, factor: ConditionFactor, aims: Matrix, softness: Matrix) -> Spline:
         # Landmarks and what is on curves come first.
-        known = np.full(len(factor.conditions.rows) - len(softness), self.tolerance)
-        return factor.solve(aims, np.concatenate([known, softness]))
+        count = len(factor.conditions.rows) - len(softness) - len(self.penalties)
+        on_curves = np.full(count, self.tolerance)
+        return factor.solve(aims, np.concatenate([self.penalties, on_curves, softness]))
 
     def _along(self) -> tuple[Matrix, Matrix]:
         """Return where the points of curves belong now, and the tangents there."""

@@ -131,6 +131,20 @@ def _rims(faces: NDArray[np.int32], count: int) -> tuple[NDArray[np.bool_], NDAr
     return rims, ends
 
 
+def rim_length(mesh: Mesh) -> float:
+    """Return the length of the edges that belong to one triangle alone, in mesh units.
+
+    Examples
+    --------
+    >>> rim_length(Mesh([[0, 0, 0], [3, 0, 0], [0, 4, 0]], [[0, 1, 2]]))
+    12.0
+    """
+    faces = welded_faces(mesh)
+    rims, _ = _rims(faces, len(mesh.vertices))
+    first, last = (mesh.vertices[faces[:, order]][rims] for order in ([1, 2, 0], [2, 0, 1]))
+    return float(np.linalg.norm(first - last, axis=1).sum())
+
+
 def _shares(positions: Matrix, corners: Matrix) -> Matrix:
     """Return (m, 3) how much of each corner is in positions of triangles, all 0 or more."""
     u, v, d = (x - corners[:, 0] for x in (corners[:, 1], corners[:, 2], positions))

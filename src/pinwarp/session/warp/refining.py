@@ -19,7 +19,8 @@ from pinwarp.core.lengths import rms
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.quality import leave_one_out
 from pinwarp.core.readiness import check_count
-from pinwarp.core.refinement import DrawnPoints, Level, Refinement, RefinementSettings, refine
+from pinwarp.core.refinement import Level, Refinement, refine
+from pinwarp.core.refinement_inputs import DrawnPoints, RefinementSettings
 from pinwarp.core.spline import Spline
 from pinwarp.core.surface import Surface
 from pinwarp.core.words import listed
