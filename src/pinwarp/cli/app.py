@@ -13,6 +13,7 @@ from pinwarp.cli.convert import convert
 from pinwarp.cli.open import OpenWindow, make_open
 from pinwarp.cli.options import Version
 from pinwarp.cli.refine import refine
+from pinwarp.cli.suggest import suggest
 from pinwarp.cli.telling import BAD_USAGE, INTERRUPTED, tell_error
 from pinwarp.cli.warp import warp
 from pinwarp.core.errors import PinwarpError, words_of
@@ -66,6 +67,6 @@ def make_app(open_window: OpenWindow) -> typer.Typer:
         del version  # told before anything else
 
     app.command(OPEN)(make_open(open_window))
-    for command in (warp, check, refine, convert, batch):
+    for command in (warp, check, suggest, refine, convert, batch):
         app.command()(command)
     return app

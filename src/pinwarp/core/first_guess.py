@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from pinwarp.core.alignment import fit_similarity
 from pinwarp.core.errors import MeshError
 from pinwarp.core.factor import factorise
-from pinwarp.core.guessed import Reading, doubt_of, guessed
+from pinwarp.core.guessed import Reading, doubt_of, guessed, posed_first
 from pinwarp.core.lengths import rms
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.plain_surface import PlainSurface
@@ -270,7 +270,7 @@ class _Sides:
         except MeshError:
             # The surfaces do not face alike in this pose: it is none.
             return None
-        return _after(found.spline, pose)
+        return posed_first(found.spline, pose)
 
     def _apart(self, warped: Mesh) -> float:
         """Return how far the surfaces lie apart: both ways, but from a part only to the whole."""
@@ -340,16 +340,3 @@ class _Sides:
         if pose < OTHER_POSE:
             words.append("It fits about as well another way round: say which is meant.")
         return (Verdict.ASK if words else Verdict.SURE), " ".join(words)
-
-
-def _after(spline: Spline, pose: Pose) -> Spline:
-    """Return the spline that first poses and then warps: distances only grow by the scale."""
-    linear = pose.scale * pose.rotation.T
-    return replace(
-        spline,
-        source=((spline.source - pose.offset) / pose.scale) @ pose.rotation,
-        weights=pose.scale * spline.weights,
-        affine=np.vstack(
-            [spline.affine[0] + pose.offset @ spline.affine[1:], linear @ spline.affine[1:]]
-        ),
-    )

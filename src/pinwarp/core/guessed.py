@@ -12,7 +12,7 @@ from where those before it had put it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -92,6 +92,15 @@ class Reading:
     def evaluate(self, points: ArrayLike) -> Matrix:
         """Return where (m, 3) places of the source lie on the destination's surface."""
         return self.surface.closest(self.spline.evaluate(points)).positions
+
+    def after(self, first: Pose) -> Reading:
+        """Return the same reading of a source that lay elsewhere before, as in a mirror."""
+        return replace(
+            self,
+            pose=self.pose.after(first),
+            spline=posed_first(self.spline, first),
+            met=(first.back(self.met[0]), self.met[1]),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,6 +196,29 @@ def guessed(
         # Of the doubt of one among others only this much is known: how near it is to an accepted
         # one, and whether the warp had reached the surface.
         order=np.argsort(radius**2 * (1 - np.sum(shares**2, axis=0)) + off**2, kind="stable"),
+    )
+
+
+def posed_first(spline: Spline, pose: Pose) -> Spline:
+    """Return the spline that poses first and then warps: distances only grow by the scale.
+
+    Examples
+    --------
+    >>> from pinwarp.core.spline import factorise, solve
+    >>> rng = np.random.default_rng(0)
+    >>> source, destination = rng.normal(size=(9, 3)), rng.normal(size=(9, 3))
+    >>> spline = solve(factorise(source), destination)
+    >>> pose = Pose(2.0, np.diag([1.0, -1.0, 1.0]), np.array([0.0, 5.0, 0.0]))
+    >>> apart = posed_first(spline, pose).evaluate(source) - spline.evaluate(pose.apply(source))
+    >>> bool(np.abs(apart).max() < 1e-9)
+    True
+    """
+    linear = pose.scale * pose.rotation.T
+    return replace(
+        spline,
+        source=pose.back(spline.source),
+        weights=pose.scale * spline.weights,
+        affine=np.vstack([[1.0, *pose.offset] @ spline.affine, linear @ spline.affine[1:]]),
     )
 
 

@@ -126,6 +126,20 @@ class Pose:
         places = np.asarray(points, dtype=np.float64)
         return np.asarray(places @ (self.scale * self.rotation).T + self.offset)
 
+    def back(self, points: ArrayLike) -> Matrix:
+        """Map (m, 3) points the other way."""
+        places = np.asarray(points, dtype=np.float64)
+        return np.asarray((places - self.offset) @ self.rotation / self.scale)
+
+    def after(self, first: Pose) -> Pose:
+        """Return the pose that does another one first."""
+        return Pose(
+            self.scale * first.scale,
+            self.rotation @ first.rotation,
+            self.apply(first.offset[None])[0],
+            self.cost,
+        )
+
     def posed(self, mesh: Mesh) -> Mesh:
         """Return a mesh in this pose, its outside still outside."""
         return Mesh(self.apply(mesh.vertices), mesh.faces[:, ::-1] if self.mirrored else mesh.faces)
@@ -306,7 +320,7 @@ class _Search:
         """Return which places meet in a pose: both ways, or only from a part to the whole."""
         now = pose.apply(self.source.positions)
         facing = self.source.normals @ pose.rotation.T
-        back = (self.destination.positions - pose.offset) @ pose.rotation / pose.scale
+        back = pose.back(self.destination.positions)
         found: list[tuple[Rows | None, Rows | None]] = [
             (self.source.nearest(back, self.destination.normals @ pose.rotation), None)
         ]
