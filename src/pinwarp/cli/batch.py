@@ -14,10 +14,12 @@ import typer
 
 from pinwarp.cli.options import Applied, Blend, Penalty, with_options
 from pinwarp.cli.refine import Feature, Tolerance, Turn
+from pinwarp.cli.suggest import MirrorOption, Partial
 from pinwarp.cli.telling import INTERRUPTED, progress_bar, tell_error, tell_notes
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.groups import Curve
 from pinwarp.core.landmarks import Landmark, Role, Side
+from pinwarp.core.pose import Mirror, PoseSettings
 from pinwarp.core.words import listed
 from pinwarp.io.landmark_files import read_landmarks
 from pinwarp.io.manifest import read_manifest
@@ -43,7 +45,8 @@ def batch(
         typer.Argument(
             metavar="MANIFEST.csv",
             help="One row for each subject: name, destination_landmarks and, where wanted, "
-            "destination_mesh, penalty, components. Paths are seen from its folder.",
+            "destination_mesh, penalty, components. Paths are seen from its folder. With "
+            "--suggest destination_landmarks may be empty.",
         ),
     ],
     out: Annotated[
@@ -52,7 +55,8 @@ def batch(
             "--out",
             "-o",
             metavar="DIR",
-            help="Where NAME_warped.ply, NAME_passengers.landmarks.csv and summary.csv go.",
+            help="Where NAME_warped.ply, NAME_passengers.landmarks.csv and summary.csv go; with "
+            "--suggest NAME.pinwarp.csv, too.",
         ),
     ],
     source: Annotated[
@@ -85,6 +89,17 @@ def batch(
             show_default=False,
         ),
     ] = None,
+    suggest: Annotated[
+        bool,
+        typer.Option(
+            "--suggest",
+            help="Suggest the landmarks that a subject lacks, from the shapes of the bones. "
+            "NAME.pinwarp.csv then is the session in which to look at them; subjects that the "
+            "shapes leave in doubt are not warped and come first in summary.csv.",
+        ),
+    ] = False,
+    mirror: MirrorOption = Mirror.ASK,
+    partial: Partial = False,
     refine: Annotated[
         bool,
         typer.Option("--refine", help="Refine each warp to the surface of the subject's mesh."),
@@ -119,7 +134,10 @@ def batch(
     """
     if scheduler is not None:
         scheduler = address_of(scheduler)
-    subjects = read_manifest(manifest)
+    known = PoseSettings(mirror, partial)
+    if known != PoseSettings() and not suggest:
+        raise PinwarpError("--mirror and --partial are about suggesting: add --suggest.")
+    subjects = read_manifest(manifest, suggested=suggest)
     shared = _source(source, source_landmarks, passengers, session)
     shared = with_options(shared, penalty, components, blend)
     given = [path for path in (source_landmarks, passengers, session) if path is not None]
@@ -130,6 +148,7 @@ def batch(
         suffix=None if suffix is None else f".{suffix.lower().removeprefix('.')}",
         inputs=given,
         refinement=_refinement(refine, feature, tolerance, turn),
+        suggestion=known if suggest else None,
     )
     tell_notes(_about_groups(shared, refine))
     if subjects.unused:

@@ -38,7 +38,7 @@ class Subject:
     line
         The line of the manifest, counted from 1.
     destination_landmarks, destination_mesh
-        Absolute paths; there need not be a mesh.
+        Absolute paths; there need not be a mesh, nor landmarks where they are to be suggested.
     penalty, components
         For this subject alone; None where the row leaves them open.
     problem
@@ -47,7 +47,7 @@ class Subject:
 
     name: str
     line: int
-    destination_landmarks: Path
+    destination_landmarks: Path | None
     destination_mesh: Path | None = None
     penalty: float | None = None
     components: Components | None = None
@@ -73,7 +73,7 @@ class Manifest:
     unused: tuple[str, ...] = ()
 
 
-def read_manifest(path: str | Path) -> Manifest:
+def read_manifest(path: str | Path, *, suggested: bool = False) -> Manifest:
     r"""Read a manifest: columns ``name, destination_landmarks`` and some more, in any order.
 
     Parameters
@@ -81,6 +81,9 @@ def read_manifest(path: str | Path) -> Manifest:
     path
         The file; the paths in it are seen from its folder. ``destination_mesh``, ``penalty`` and
         ``components`` may be missing or empty.
+    suggested
+        Whether ``destination_landmarks`` may be so, too: where it is they are to be suggested on
+        the ``destination_mesh``.
 
     Returns
     -------
@@ -115,11 +118,12 @@ def read_manifest(path: str | Path) -> Manifest:
         for row in rows_of(lines, separator)
         if not row.is_blank and not row.text.startswith("#")
     ]
-    columns = _columns(place, rows)
+    required = REQUIRED[:1] if suggested else REQUIRED
+    columns = _columns(place, rows, required)
     subjects: dict[str, Subject] = {}
     for row in rows[1:]:
         try:
-            subject = _subject(row, columns, separator, place)
+            subject = _subject(row, columns, separator, place, required)
             # Some systems take two names for one whose letters are composed in other ways.
             look = visible(subject.name).casefold()
             if earlier := subjects.get(look):
@@ -142,15 +146,16 @@ def _unlike(name: str, other: str) -> str:
     return "" if name.casefold() == other.casefold() else " in letters that look the same"
 
 
-def _columns(path: Path, rows: Sequence[Row]) -> tuple[str, ...]:
+def _columns(path: Path, rows: Sequence[Row], required: Sequence[str]) -> tuple[str, ...]:
     cells = rows[0].cells if rows else ()
     columns = tuple(cell.strip().lower().replace(" ", "_") for cell in cells)
     line = rows[0].line if rows else 1
-    if missing := [column for column in REQUIRED if column not in columns]:
+    if missing := [column for column in required if column not in columns]:
         raise FileFormatError(
             path,
             f"The column {missing[0]!r} is missing. The first row names the columns: "
-            f"{', '.join(REQUIRED)} and, where wanted, {', '.join(OPTIONAL)}.",
+            f"{', '.join(required)} and, where wanted, "
+            f"{', '.join(column for column in _COLUMNS if column not in required)}.",
             line,
         )
     for column in _COLUMNS:
@@ -159,7 +164,9 @@ def _columns(path: Path, rows: Sequence[Row]) -> tuple[str, ...]:
     return columns
 
 
-def _subject(row: Row, columns: Sequence[str], separator: str, manifest: Path) -> Subject:
+def _subject(
+    row: Row, columns: Sequence[str], separator: str, manifest: Path, required: Sequence[str]
+) -> Subject:
     """Make a subject of one row, or raise a ValueError where it has no name."""
     if row.problem:
         raise ValueError(row.problem)
@@ -168,10 +175,15 @@ def _subject(row: Row, columns: Sequence[str], separator: str, manifest: Path) -
     try:
         if any(cell.strip() for cell in row.cells[len(columns) :]):
             raise ValueError(f"the row has {len(row.cells)} cells for {len(columns)} columns")
+        for column in required:
+            if not cells.get(column):
+                raise ValueError(f"there is no {column}")
         values = {
             column: _value(column, cells.get(column, ""), separator, manifest.parent)
             for column in _COLUMNS[1:]
         }
+        if values["destination_landmarks"] is None and values["destination_mesh"] is None:
+            raise ValueError("there is no destination_mesh to suggest landmarks on")
     except ValueError as error:
         return Subject(name, row.line, manifest, problem=as_sentence(str(error)))
     return Subject(name, row.line, **values)
@@ -180,8 +192,6 @@ def _subject(row: Row, columns: Sequence[str], separator: str, manifest: Path) -
 def _value(column: str, text: str, separator: str, folder: Path) -> Any:
     """Read a cell, or raise a ValueError with the reason, which names the column."""
     if not text:
-        if column in REQUIRED:
-            raise ValueError(f"there is no {column}")
         return None
     try:
         match column:

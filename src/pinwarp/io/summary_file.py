@@ -26,8 +26,22 @@ NUMBERS = (
     "distance_max",
     "fitted",
     "freed",
+    "suggested",
+    "misfit",
+    "other_hand",
+    "other_pose",
 )
-COLUMNS = ("name", "status", *NUMBERS, "findings", "notes", "error", "seconds", "made_from")
+COLUMNS = (
+    "name",
+    "status",
+    "verdict",
+    *NUMBERS,
+    "findings",
+    "notes",
+    "error",
+    "seconds",
+    "made_from",
+)
 
 
 def write_summary(path: str | Path, rows: Iterable[SummaryRow]) -> None:

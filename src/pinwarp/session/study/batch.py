@@ -3,26 +3,31 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError, PinwarpError, words_of
+from pinwarp.core.first_guess import Verdict
 from pinwarp.core.groups import on_source_only
 from pinwarp.core.landmarks import Role
+from pinwarp.core.pose import PoseSettings
 from pinwarp.core.settings import WarpSettings
 from pinwarp.io.manifest import Manifest, Subject
 from pinwarp.io.meshes import MESH_SUFFIXES
 from pinwarp.io.summary_file import SummaryRow, read_summary, write_summary
 from pinwarp.session.outputs.replacing import refuse_to_replace
 from pinwarp.session.session import Session, to_record
+from pinwarp.session.study.first_pass import Suggestion
 from pinwarp.session.study.subject import Outcome, Task, made_from, places_of, warp_subject
 from pinwarp.session.study.workers import Runner, WorkEnded
 from pinwarp.session.warp.refining import RefinementOptions
 
 SUMMARY = "summary.csv"
 DONE, FAILED = "done", "failed"
+# Verdicts of the first pass with which a subject is not warped.
+DOUBTFUL = (Verdict.ASK.value, Verdict.NONE.value)
 # The table is written again as often; what a power cut takes away is done again.
 SECONDS_BETWEEN_SAVES = 1.0
 
@@ -65,6 +70,7 @@ def plan(
     suffix: str | None = None,
     inputs: Iterable[Path] = (),
     refinement: RefinementOptions | None = None,
+    suggestion: PoseSettings | None = None,
 ) -> tuple[Task, ...]:
     """Return what is to be done for each subject; nothing is written yet.
 
@@ -83,6 +89,9 @@ def plan(
         Further files that must not be overwritten.
     refinement
         How each warp is refined to its subject's surface; without it none is.
+    suggestion
+        What is known of the bones where landmarks that a subject lacks are to be suggested;
+        without it none are.
 
     Raises
     ------
@@ -147,13 +156,18 @@ def plan(
                 folder / f"{subject.name}_passengers.landmarks.csv" if has_passengers else None
             ),
             refinement=refinement,
+            suggestion=(
+                None
+                if suggestion is None
+                else Suggestion(suggestion, folder / f"{subject.name}.pinwarp.csv")
+            ),
         )
         for subject in manifest.subjects
     )
     read = [manifest.path, source.source.path, *inputs]
     for task in tasks:
-        read += [task.subject.destination_landmarks]
-        read += [] if task.subject.destination_mesh is None else [task.subject.destination_mesh]
+        files = (task.subject.destination_landmarks, task.subject.destination_mesh)
+        read += [path for path in files if path is not None]
     refuse_to_replace(read, [folder / SUMMARY, *(path for task in tasks for path in task.outputs)])
     return tasks
 
@@ -267,7 +281,9 @@ class _Summary:
             self.save()
 
     def save(self) -> None:
-        write_summary(self.path, (self._rows[x] for x in self._order if x in self._rows))
+        rows = [self._rows[x] for x in self._order if x in self._rows]
+        # What has to be looked into stands where it is seen.
+        write_summary(self.path, sorted(rows, key=lambda row: row.get("verdict") not in DOUBTFUL))
         self._saved = time.monotonic()
 
 
@@ -277,6 +293,9 @@ def _row(task: Task, result: Outcome | Exception) -> SummaryRow:
     if isinstance(result, Exception):
         return {"name": name, "status": FAILED, "error": words_of(result) or repr(result)}
     row = {"name": name, "seconds": f"{result.seconds:.3f}", "made_from": result.made_from}
+    if (guess := result.first_pass) is not None:
+        told = {"misfit": guess.fit, "other_hand": guess.other_hand, "other_pose": guess.other_pose}
+        row |= {"verdict": guess.verdict.value, **_digits(told)}
     checked = result.check
     if checked is None:
         return row | {"status": FAILED, "error": result.error}
@@ -294,13 +313,19 @@ def _row(task: Task, result: Outcome | Exception) -> SummaryRow:
         "distance_max": None if distance is None else distance.maximum,
         "fitted": checked.fitted,
         "freed": checked.freed,
+        "suggested": checked.suggested or None,
     }
     return (
         row
         | {"status": DONE}
-        | {key: f"{value:.6g}" for key, value in figures.items() if value is not None}
+        | _digits(figures)
         | {
             "findings": " ".join(named.sentence for named in checked.findings),
             "notes": " ".join((*result.notes, *checked.notes)),
         }
     )
+
+
+def _digits(figures: Mapping[str, float | None]) -> dict[str, str]:
+    """Return the figures that are known, as a table has them."""
+    return {key: f"{value:.6g}" for key, value in figures.items() if value is not None}

@@ -22,8 +22,12 @@ from pinwarp.io.refinement_record import METHOD
 from pinwarp.io.session_file import MeshReference
 from pinwarp.session.importing.conversion import frame_notes
 from pinwarp.session.judging.check import Check, check
+from pinwarp.session.keeping.files import write_session
 from pinwarp.session.outputs.exports import warped_mesh, warped_passengers
 from pinwarp.session.session import Session, as_seen
+from pinwarp.session.study.first_pass import DoubtfulError, FirstPass, Suggestion, first_passed
+from pinwarp.session.suggesting import METHOD as GUESS_METHOD
+from pinwarp.session.suggesting import missing_of
 from pinwarp.session.warp.refining import RefinementOptions, refined_session
 from pinwarp.session.warp.solved import solved
 from pinwarp.version import __version__
@@ -47,6 +51,8 @@ class Task:
         Where the warped passengers go; None where there are none.
     refinement
         How the warp is refined to the subject's surface; None where it is not.
+    suggestion
+        How landmarks that the subject lacks are suggested; None where they are not.
     """
 
     subject: Subject
@@ -55,11 +61,13 @@ class Task:
     mesh: Path
     passengers: Path | None
     refinement: RefinementOptions | None = None
+    suggestion: Suggestion | None = None
 
     @property
     def outputs(self) -> tuple[Path, ...]:
         """All files that are written."""
-        return (self.mesh,) if self.passengers is None else (self.mesh, self.passengers)
+        suggested = None if self.suggestion is None else self.suggestion.session
+        return tuple(x for x in (self.mesh, self.passengers, suggested) if x is not None)
 
 
 @dataclass(frozen=True)
@@ -78,6 +86,8 @@ class Outcome:
         What was left out, as sentences.
     error
         Why it failed, as a sentence; empty where it did not.
+    first_pass
+        What the shapes told where landmarks were suggested, or could not be.
     """
 
     made_from: str
@@ -85,6 +95,7 @@ class Outcome:
     check: Check | None = None
     notes: tuple[str, ...] = ()
     error: str = ""
+    first_pass: FirstPass | None = None
 
 
 def warp_subject(task: Task) -> Outcome:
@@ -103,8 +114,11 @@ def warp_subject(task: Task) -> Outcome:
     start = time.perf_counter()
     try:
         hashed = made_from(task)
-        checked, notes = _warp(task)
-        return Outcome(hashed, time.perf_counter() - start, checked, notes)
+        checked, notes, first_pass = _warp(task)
+        return Outcome(hashed, time.perf_counter() - start, checked, notes, first_pass=first_pass)
+    except DoubtfulError as error:
+        seconds = time.perf_counter() - start
+        return Outcome("", seconds, error=str(error), first_pass=error.first_pass)
     except (PinwarpError, OSError) as error:
         words = words_of(error)
     except MemoryError:
@@ -114,14 +128,19 @@ def warp_subject(task: Task) -> Outcome:
     return Outcome("", time.perf_counter() - start, error=words)
 
 
-def _warp(task: Task) -> tuple[Check, tuple[str, ...]]:
+def _warp(task: Task) -> tuple[Check, tuple[str, ...], FirstPass | None]:
     subject = task.subject
-    reading = read_landmarks(subject.destination_landmarks, Side.DESTINATION)
-    session, notes = with_destinations(task.session, reading, subject.destination_landmarks)
+    session, notes = task.session, tuple[str, ...]()
+    if subject.destination_landmarks is not None:
+        reading = read_landmarks(subject.destination_landmarks, Side.DESTINATION)
+        session, notes = with_destinations(session, reading, subject.destination_landmarks)
     if isinstance(task.session.source, MeshReference):
         session = session.with_mesh(Side.SOURCE, _source(task.session.source))
     if subject.destination_mesh is not None:
         session = session.with_mesh(Side.DESTINATION, read_mesh(subject.destination_mesh))
+    first_pass = None
+    if task.suggestion is not None and missing_of(session):
+        session, first_pass = first_passed(session, task.suggestion.settings)
     if task.refinement is not None:
         session, refined = refined_session(session, task.refinement)
         if refined.folding:
@@ -135,7 +154,9 @@ def _warp(task: Task) -> tuple[Check, tuple[str, ...]]:
     write_mesh(task.mesh, warped_mesh(warp))
     if task.passengers is not None:
         write_landmarks(task.passengers, warped_passengers(warp), Side.DESTINATION)
-    return checked, notes
+    if task.suggestion is not None:
+        write_session(task.suggestion.session, session)
+    return checked, notes, first_pass
 
 
 # All subjects of a process have the same source: it is read once.
@@ -179,13 +200,13 @@ def with_destinations(
     >>> [pair.name for pair in session.pairs], notes
     (['tip'], ('1 landmark is not in anna.csv: apex.',))
     """
-    placed = {x.name: x.destination for x in reading.landmarks if x.destination is not None}
+    placed = {x.name: x for x in reading.landmarks if x.destination is not None}
     landmarks, missing = [], []
     for landmark in session.landmarks:
         is_passenger = landmark.role is Role.PASSENGER
-        position = None if is_passenger else placed.pop(landmark.name, None)
-        landmarks.append(replace(landmark, destination=position))
-        if position is None and landmark.enabled and not is_passenger:
+        found = None if is_passenger else placed.pop(landmark.name, None)
+        landmarks.append(_with_destination(landmark, found))
+        if found is None and landmark.enabled and not is_passenger:
             missing.append(landmark.name)
         elif is_passenger:
             placed.pop(landmark.name, None)
@@ -205,6 +226,15 @@ def with_destinations(
     notes += look_alike_notes((*missing, *placed))
     notes += [f"{path.name}, line {x.line} was skipped: {x.reason}." for x in reading.skipped]
     return session, tuple(notes)
+
+
+def _with_destination(landmark: Landmark, found: Landmark | None) -> Landmark:
+    if found is None or found.destination is None:
+        return replace(landmark, destination=None)
+    # Nobody has looked at it by reading it from a file.
+    if found.is_suggested:
+        return landmark.suggested(found.destination)
+    return replace(landmark, destination=found.destination)
 
 
 def _are(names: Sequence[str]) -> str:
@@ -245,6 +275,7 @@ def made_from(task: Task) -> str:
         _content(task, subject.destination_mesh),
         task.mesh.suffix,
         *(() if task.refinement is None else (astuple(task.refinement), METHOD)),
+        *(() if task.suggestion is None else (astuple(task.suggestion.settings), GUESS_METHOD)),
     )
     return f"sha256:{hashlib.sha256(repr(parts).encode()).hexdigest()[:32]}"
 

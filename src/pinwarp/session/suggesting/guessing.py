@@ -20,6 +20,9 @@ from pinwarp.session.warp.fingerprint import fingerprint, mesh_parts
 Matrix = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
+# Which way of guessing; another number once it gives other places.
+METHOD = 1
+
 
 def _silent(_share: float, _words: str) -> None:
     pass
