@@ -77,11 +77,11 @@ def main() -> None:
     parser.add_argument(
         "--only",
         nargs="*",
-        help="solve, point, evaluate, live, quality, slide, refine, refined, memory, frames, "
-        "refresh",
+        help="solve, point, evaluate, live, quality, slide, refine, refined, guess, half, "
+        "memory, frames, refresh",
     )
     options = parser.parse_args()
-    from tests.benchmarks import core, frames, peers, quality, refinement
+    from tests.benchmarks import core, frames, guessing, peers, quality, refinement
 
     parts = {
         "solve": ("One solve", core.solving),
@@ -92,6 +92,8 @@ def main() -> None:
         "slide": ("Semilandmarks, on one thread", refinement.sliding),
         "refine": ("Refining to the whole surface", refinement.refining),
         "refined": ("What came of it (mm)", refinement.refined),
+        "guess": ("The first guess, RMS in % of the bone's size", guessing.guessing),
+        "half": ("The first guess on half a bone", guessing.halves),
         "memory": ("Peak memory beyond the meshes (MB)", core.remembering),
         "frames": ("In the window", frames.framing),
         "refresh": ("Figures after a drag, 200 pairs", frames.refreshing),

@@ -90,7 +90,7 @@ def test_what_is_wrong_is_told_with_its_line(tmp_path, text, line, words):
 @pytest.mark.parametrize(
     ("header", "row", "words"),
     [
-        ("", "anna", "There is no destination_landmarks."),
+        ("", "anna", "There is no destination_landmarks: write it"),
         ("", "anna,a.csv,surplus", "The row has 3 cells for 2 columns."),
         (
             ",penalty",

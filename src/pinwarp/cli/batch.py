@@ -94,8 +94,9 @@ def batch(
         typer.Option(
             "--suggest",
             help="Suggest the landmarks that a subject lacks, from the shapes of the bones. "
-            "NAME.pinwarp.csv then is the session in which to look at them; subjects that the "
-            "shapes leave in doubt are not warped and come first in summary.csv.",
+            "NAME.pinwarp.csv then is the session in which to look at them: the next run warps the "
+            "subject by what you made of it, and never replaces it. Subjects that the shapes "
+            "leave in doubt are not warped and come first in summary.csv.",
         ),
     ] = False,
     mirror: MirrorOption = Mirror.ASK,

@@ -43,14 +43,16 @@ OTHER_POSE = 1.3
 # Poses are judged once warped, where their cost is not so many times the best; of a hand so many.
 RIVALS = 1.6
 MOST_RIVALS = 3
+# What the finite number of places costs in any pose, so that a copy has rivals, too.
+SMALLEST_COST = 0.03
 # Warps whose places lie closer than this share of the size are one reading.
 SAME_READING = 0.1
-# Where no reading is among fewer than so many alike, pictures of them all would help nobody.
-MOST_ALIKE = 3
+# Either end up and either hand can be asked about; more readings say that the bone is too round.
+MOST_SHOWN = 4
 # Rims longer than this share of the root of the area, more than the source's, mean a cut bone.
 CUT = 0.3
 # Places of a coarse warp and of the last one, and those by which the fit is measured.
-COARSE, FINE, JUDGED = 150, 400, 3000
+COARSE, FINE, JUDGED = 150, 1000, 3000
 # Places that hold a warp loosely, and their penalty in sizes of the destination.
 LOOSE, LOOSENESS = 40, 1e5
 # Pairs that fix a pose.
@@ -187,7 +189,8 @@ def _rivals(poses: Sequence[Pose]) -> list[Pose]:
     rivals: list[Pose] = []
     for pose in poses:
         alike = sum(other.mirrored == pose.mirrored for other in rivals)
-        if not alike or (alike < MOST_RIVALS and pose.cost <= RIVALS * poses[0].cost):
+        near = pose.cost <= RIVALS * max(poses[0].cost, SMALLEST_COST)
+        if not alike or (alike < MOST_RIVALS and near):
             rivals.append(pose)
     return rivals
 
@@ -217,9 +220,8 @@ class _Sides:
         one, other = self.source.parts, self.destination.parts
         if one != other:
             raise MeshError(
-                f"The source has {counted(one, 'large part')} that hang together, the destination "
-                f"{other}: a first guess needs the same bone on both sides. Take out what is not "
-                "of the bone, or place three pairs and refine."
+                f"The source is in {counted(one, 'large part')}, the destination in {other}: a "
+                "first guess needs the same bone on both sides. Take out what is not of the bone."
             )
 
     def read(self, pose: Pose, count: int, progress: Progress) -> Reading | None:
@@ -285,7 +287,8 @@ class _Sides:
         if not different:
             return FirstGuess((), Verdict.NONE, f"{NOTHING_FITS} {WAY_OUT}", np.inf, np.inf, np.inf)
         best, *others = different
-        others = [replace(x, margin=x.fit / max(best.fit, SMALLEST_FIT)) for x in others]
+        least = max(best.fit, SMALLEST_FIT)
+        others = [replace(x, margin=max(x.fit, SMALLEST_FIT) / least) for x in others]
         hand = min((x.margin for x in others if x.mirrored != best.mirrored), default=np.inf)
         pose = min((x.margin for x in others if x.mirrored == best.mirrored), default=np.inf)
         near = [
@@ -326,7 +329,7 @@ class _Sides:
                 f"{NOTHING_FITS} At best they lie {best.fit:.1%} of the bone's size apart, where "
                 f"no more than {LARGEST_FIT:.0%} can be trusted. {WAY_OUT}"
             )
-        if len(near) >= MOST_ALIKE:
+        if 1 + len(near) > MOST_SHOWN:
             return Verdict.NONE, (
                 f"The source fits in {len(near) + 1} ways about as well, as something round does: "
                 f"no pose can be told. {WAY_OUT}"

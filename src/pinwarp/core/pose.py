@@ -42,7 +42,12 @@ class _Step:
     settled: float
 
 
-STEPS = (_Step(300, 15, 6, 1e-4), _Step(1000, 80, 4, 1e-5), _Step(2500, 30, 3, 5e-6))
+STEPS = (
+    _Step(150, 5, 20, 1e-4),
+    _Step(300, 15, 6, 1e-4),
+    _Step(1000, 60, 4, 1e-5),
+    _Step(2500, 20, 3, 5e-6),
+)
 # Spins about each principal axis.
 SPINS = 8
 # The nearest of either cloud; what is further may have no counterpart.

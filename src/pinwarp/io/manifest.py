@@ -175,9 +175,9 @@ def _subject(
     try:
         if any(cell.strip() for cell in row.cells[len(columns) :]):
             raise ValueError(f"the row has {len(row.cells)} cells for {len(columns)} columns")
-        for column in required:
+        for column in required[1:]:
             if not cells.get(column):
-                raise ValueError(f"there is no {column}")
+                raise ValueError(f"there is no {column}: write it, or add --suggest")
         values = {
             column: _value(column, cells.get(column, ""), separator, manifest.parent)
             for column in _COLUMNS[1:]

@@ -25,7 +25,13 @@ from pinwarp.session.judging.check import Check, check
 from pinwarp.session.keeping.files import write_session
 from pinwarp.session.outputs.exports import warped_mesh, warped_passengers
 from pinwarp.session.session import Session, as_seen
-from pinwarp.session.study.first_pass import DoubtfulError, FirstPass, Suggestion, first_passed
+from pinwarp.session.study.first_pass import (
+    DoubtfulError,
+    FirstPass,
+    Suggestion,
+    earlier_pass,
+    first_passed,
+)
 from pinwarp.session.suggesting import METHOD as GUESS_METHOD
 from pinwarp.session.suggesting import missing_of
 from pinwarp.session.warp.refining import RefinementOptions, refined_session
@@ -115,6 +121,9 @@ def warp_subject(task: Task) -> Outcome:
     try:
         hashed = made_from(task)
         checked, notes, first_pass = _warp(task)
+        if task.suggestion is not None:
+            # From now on it is an input, too.
+            hashed = made_from(task)
         return Outcome(hashed, time.perf_counter() - start, checked, notes, first_pass=first_pass)
     except DoubtfulError as error:
         seconds = time.perf_counter() - start
@@ -129,18 +138,12 @@ def warp_subject(task: Task) -> Outcome:
 
 
 def _warp(task: Task) -> tuple[Check, tuple[str, ...], FirstPass | None]:
-    subject = task.subject
-    session, notes = task.session, tuple[str, ...]()
-    if subject.destination_landmarks is not None:
-        reading = read_landmarks(subject.destination_landmarks, Side.DESTINATION)
-        session, notes = with_destinations(session, reading, subject.destination_landmarks)
-    if isinstance(task.session.source, MeshReference):
-        session = session.with_mesh(Side.SOURCE, _source(task.session.source))
-    if subject.destination_mesh is not None:
-        session = session.with_mesh(Side.DESTINATION, read_mesh(subject.destination_mesh))
+    session, notes = _begun(task)
     first_pass = None
-    if task.suggestion is not None and missing_of(session):
-        session, first_pass = first_passed(session, task.suggestion.settings)
+    if task.suggestion is not None:
+        if missing_of(session):
+            session, first_pass = first_passed(session, task.suggestion.settings)
+        to_be_seen = session
     if task.refinement is not None:
         session, refined = refined_session(session, task.refinement)
         if refined.folding:
@@ -154,9 +157,26 @@ def _warp(task: Task) -> tuple[Check, tuple[str, ...], FirstPass | None]:
     write_mesh(task.mesh, warped_mesh(warp))
     if task.passengers is not None:
         write_landmarks(task.passengers, warped_passengers(warp), Side.DESTINATION)
-    if task.suggestion is not None:
-        write_session(task.suggestion.session, session)
+    # What somebody may have worked on since is never replaced.
+    if task.suggestion is not None and not task.suggestion.session.exists():
+        write_session(task.suggestion.session, to_be_seen)
     return checked, notes, first_pass
+
+
+def _begun(task: Task) -> tuple[Session, tuple[str, ...]]:
+    """Return the session of a subject with all that is known of it, and notes."""
+    subject = task.subject
+    if task.suggestion is not None and task.suggestion.session.exists():
+        return earlier_pass(task.suggestion.session, task.session), ()
+    session, notes = task.session, tuple[str, ...]()
+    if subject.destination_landmarks is not None:
+        reading = read_landmarks(subject.destination_landmarks, Side.DESTINATION)
+        session, notes = with_destinations(session, reading, subject.destination_landmarks)
+    if isinstance(session.source, MeshReference):
+        session = session.with_mesh(Side.SOURCE, _source(session.source))
+    if subject.destination_mesh is not None:
+        session = session.with_mesh(Side.DESTINATION, read_mesh(subject.destination_mesh))
+    return session, notes
 
 
 # All subjects of a process have the same source: it is read once.
@@ -275,7 +295,7 @@ def made_from(task: Task) -> str:
         _content(task, subject.destination_mesh),
         task.mesh.suffix,
         *(() if task.refinement is None else (astuple(task.refinement), METHOD)),
-        *(() if task.suggestion is None else (astuple(task.suggestion.settings), GUESS_METHOD)),
+        *_of_suggestion(task),
     )
     return f"sha256:{hashlib.sha256(repr(parts).encode()).hexdigest()[:32]}"
 
@@ -284,6 +304,14 @@ def _of_groups(session: Session) -> tuple[object, ...]:
     # Sets have no order of their own; without groups the hash is what it always was.
     groups = [(replace(x, excluded=frozenset()), sorted(x.excluded)) for x in session.groups]
     return (groups, SLIDING_METHOD) if groups else ()
+
+
+def _of_suggestion(task: Task) -> tuple[object, ...]:
+    if (suggestion := task.suggestion) is None:
+        return ()
+    there = suggestion.session.exists()
+    looked_at = _content(task, suggestion.session) if there else ""
+    return (astuple(suggestion.settings), GUESS_METHOD, looked_at)
 
 
 def _content(task: Task, path: Path | None) -> str:
