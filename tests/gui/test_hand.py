@@ -47,7 +47,8 @@ def ghosts(qapp, editor):
 def hand(editor, ghosts):
     across, upwards = np.array([1.0, 0, 0]), np.array([0, 1.0, 0])
     view = Mock(surface=Surface(TETRAHEDRON), view_axes=lambda: (across, upwards))
-    return Hand(editor, dict.fromkeys(Side, view), ghosts)
+    turning = Mock(show_place=lambda _side, _position: False)
+    return Hand(editor, dict.fromkeys(Side, view), ghosts, turning)
 
 
 def test_the_ghost_is_of_the_landmark_that_is_asked_for_now(editor, ghosts):

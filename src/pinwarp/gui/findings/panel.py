@@ -94,7 +94,7 @@ class FindingRow(QFrame):
         self._show_button(self.remedy, remedy, tip)
         self._show_button(
             self.disable,
-            "Disable" if names and grave else "",
+            "Disable" if names and grave and kind is not FindingKind.SUGGESTED else "",
             f"Let {names[0]} take no part" if len(names) == 1 else "Let one of them take no part",
         )
         if self.found is None or (names, kind) != (self.found.names, self.found.finding.kind):

@@ -13,12 +13,14 @@ from pinwarp.gui.findings.panel import FindingsPanel
 from pinwarp.gui.maps.presenter import MapPresenter
 from pinwarp.gui.placing.bone_edits import BoneEdits
 from pinwarp.gui.placing.hand import Hand
+from pinwarp.gui.placing.reviewing import Reviewing
 from pinwarp.gui.table.presenter import TablePresenter
 from pinwarp.gui.views.controls import ViewControls
 from pinwarp.gui.warp.quality import QualityPresenter
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.quality import NamedFinding, Quality, named_findings
+from pinwarp.session.judging.suggested import about_suggested
 from pinwarp.session.naming import in_words
 from pinwarp.session.warp.pair_names import pair_names
 
@@ -41,6 +43,8 @@ class FindingsPresenter(Capability):
         Moves landmarks, unless they are locked.
     bones
         Mirrors the source.
+    reviewing
+        Looks at what is only suggested.
     views
         Look at landmarks.
     undo_key
@@ -57,6 +61,7 @@ class FindingsPresenter(Capability):
         table: TablePresenter,
         hand: Hand,
         bones: BoneEdits,
+        reviewing: Reviewing,
         views: ViewControls,
         undo_key: str,
         say: Callable[[str], None],
@@ -67,6 +72,7 @@ class FindingsPresenter(Capability):
         self._table = table
         self._hand = hand
         self._bones = bones
+        self._reviewing = reviewing
         self._views = views
         self._undo_key = undo_key
         self._say = say
@@ -135,9 +141,12 @@ class FindingsPresenter(Capability):
         if judged is not None:
             found += named_findings(folds, judged, session)
         # Folds come behind what causes them, what is only isolated last.
-        found = gravest_first(found)
+        found = gravest_first((*found, *about_suggested(session)))
         self._found = tuple(one for one in found if one.finding.kind not in _TOLD_ELSEWHERE)
-        self._table.model.show_findings(self._found)
+        self._table.model.show_findings(
+            # What is suggested has its sign as a state.
+            [one for one in self._found if one.finding.kind is not FindingKind.SUGGESTED]
+        )
         self.panel.show_findings(self._found, self._mirror_axis(quality))
         self.panel.show_selection(self._editor.selection.names)
         self._next.renew()
@@ -156,6 +165,9 @@ class FindingsPresenter(Capability):
 
     def _choose(self, found: NamedFinding) -> None:
         """Select the landmarks of a finding and look at them."""
+        if found.finding.kind is FindingKind.SUGGESTED:
+            self._reviewing.begin()
+            return
         self._table.panel.reveal(found.names)
         self._editor.select(*found.names)
         self._views.focus()
@@ -168,7 +180,8 @@ class FindingsPresenter(Capability):
         here = [i for i, one in enumerate(self._found) if set(one.names) == chosen]
         following = (here[0] + 1) % len(self._found) if here else 0
         self._choose(self._found[following])
-        self.panel.focus_row(following)
+        if self._found[following].finding.kind is not FindingKind.SUGGESTED:
+            self.panel.focus_row(following)
 
     def _is_current(self, found: NamedFinding) -> bool:
         """Whether the pairs are still those that were judged: a second click must not undo it."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +21,10 @@ from pinwarp.gui.painted.arrows import paint_arrow
 from pinwarp.gui.painted.legend import PaintedLegend
 from pinwarp.gui.painted.markers import (
     FAINT,
+    GHOST_RADIUS,
     HALO,
     STAR_RADIUS,
+    draw_ghost,
     draw_label,
     draw_label_below,
     draw_star,
@@ -35,6 +37,7 @@ from pinwarp.gui.scene.drawables import (
     Arrows,
     Badge,
     Caption,
+    Counterpart,
     CurveHandle,
     Dots,
     Drawable,
@@ -42,6 +45,7 @@ from pinwarp.gui.scene.drawables import (
     Hint,
     Marker,
     Markers,
+    OtherGhosts,
     Paths,
     ScaleBar,
     Slides,
@@ -52,6 +56,8 @@ from pinwarp.gui.scene.projection import Projection
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.style import theme
 from pinwarp.session.warp.ghost import Ghost
+
+_Sign = TypeVar("_Sign", Marker, Ghost)
 
 # Once nothing was painted for so long, all is found out about what the bone hides.
 _REST_MS = 150
@@ -87,7 +93,9 @@ class MarkerLayer(QWidget):
             Dots: self._paint_dots,
             Handles: self._paint_handles,
             Star: self._paint_star,
+            OtherGhosts: self._paint_other_ghosts,
             Ghost: self._paint_ghost,
+            Counterpart: self._paint_counterpart,
             Arrows: self._paint_arrows,
             Markers: self._paint_markers,
             Badge: self._paint_badge,
@@ -140,26 +148,42 @@ class MarkerLayer(QWidget):
 
     def hidden(self) -> NDArray[np.bool_]:
         """Return which landmarks lie behind the surface as the camera stands now."""
+        return self._are_hidden([marker.position for marker in self.markers])
+
+    def _are_hidden(self, positions: Sequence[Position]) -> NDArray[np.bool_]:
         key = self._projection.view_key()
         if key != self._hidden_for:
             self._hidden, self._hidden_for = {}, key
-        new = [x.position for x in self.markers if x.position not in self._hidden]
+        new = [position for position in positions if position not in self._hidden]
         if new:
             found = self._projection.behind_surface(np.array(new))
             self._hidden.update(zip(new, found.tolist(), strict=True))
-        return np.array([self._hidden[x.position] for x in self.markers], dtype=bool)
+        return np.array([self._hidden[position] for position in positions], dtype=bool)
 
     def nearest(self, at: QPointF, within: float) -> Marker | None:
         """Return the seen landmark nearest to a place on the screen, if any is near enough."""
-        if not self.markers:
-            return None
-        distances = np.hypot(*(self.places() - [at.x(), at.y()]).T)
-        distances[self.hidden()] = np.inf
-        index = int(np.argmin(distances))
         # A large sign can be grabbed wherever it is seen.
-        return (
-            self.markers[index] if distances[index] <= max(within, self._signs.radius + 2) else None
-        )
+        return self._nearest(self.markers, at, max(within, self._signs.radius + 2))
+
+    @property
+    def ghosts(self) -> tuple[Ghost, ...]:
+        """The ghosts on this sheet, the next one first."""
+        ghost, others = self._scene.of(Ghost), self._scene.of(OtherGhosts)
+        first = () if ghost is None else (ghost,)
+        return first if others is None else (*first, *others.ghosts)
+
+    def nearest_ghost(self, at: QPointF, within: float) -> Ghost | None:
+        """Return the seen ghost nearest to a place on the screen, if any is near enough."""
+        return self._nearest(self.ghosts, at, within)
+
+    def _nearest(self, signs: Sequence[_Sign], at: QPointF, within: float) -> _Sign | None:
+        if not signs:
+            return None
+        positions = [sign.position for sign in signs]
+        distances = np.hypot(*(self._project(positions) - [at.x(), at.y()]).T)
+        distances[self._are_hidden(positions)] = np.inf
+        index = int(np.argmin(distances))
+        return signs[index] if distances[index] <= within else None
 
     def nearest_handle(self, at: QPointF, within: float) -> CurveHandle | None:
         """Return the seen handle of a curve nearest to a place on the screen, if near enough."""
@@ -261,25 +285,47 @@ class MarkerLayer(QWidget):
         painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, words)
 
     def _paint_ghost(self, painter: QPainter, ghost: Ghost) -> None:
-        """Paint a dashed ring where a landmark is expected, in a disc as wide as the doubt."""
-        position = np.array(ghost.position)
-        ((x, y),) = self._project([ghost.position])
+        """Paint the next ghost, with its name; what lies behind the bone is faint."""
+        ((x, y),), (hidden,) = self._project([ghost.position]), self._are_hidden([ghost.position])
         at = QPointF(x, y)
-        colour = QColor(theme.GHOST_COLOUR)
-        if ghost.deviation is not None:
-            radius = ghost.deviation * self._projection.pixels_per_unit(position)
-            colour.setAlphaF(0.22)
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(colour)
-            painter.drawEllipse(at, radius, radius)
-        for pen in (
-            QPen(QColor(theme.PAPER), 3.5),
-            QPen(QColor(theme.GHOST_COLOUR), 2, Qt.PenStyle.DotLine),
-        ):
-            painter.setPen(pen)
-            painter.setBrush(Qt.BrushStyle.NoBrush)
-            painter.drawEllipse(at, 8, 8)
+        painter.setOpacity(0.5 if hidden else 1.0)
+        self._paint_doubt(painter, ghost, at, 0.22)
+        draw_ghost(painter, at, GHOST_RADIUS)
         draw_label(painter, f"{ghost.name}?", at, self.room_at(at))
+        painter.setOpacity(1.0)
+
+    def _paint_other_ghosts(self, painter: QPainter, others: OtherGhosts) -> None:
+        """Paint smaller rings without names, in discs that leave the bone to be seen."""
+        positions = [ghost.position for ghost in others.ghosts]
+        places, hidden = self._project(positions).tolist(), self._are_hidden(positions).tolist()
+        for ghost, place, out in zip(others.ghosts, places, hidden, strict=True):
+            painter.setOpacity(FAINT if out else 1.0)
+            self._paint_doubt(painter, ghost, QPointF(*place), 0.1)
+        for place, out in zip(places, hidden, strict=True):
+            painter.setOpacity(FAINT if out else 1.0)
+            draw_ghost(painter, QPointF(*place), GHOST_RADIUS - 3)
+        painter.setOpacity(1.0)
+
+    def _paint_doubt(self, painter: QPainter, ghost: Ghost, at: QPointF, alpha: float) -> None:
+        """Paint a disc as wide as the doubt."""
+        if ghost.deviation is None:
+            return
+        radius = ghost.deviation * self._projection.pixels_per_unit(np.array(ghost.position))
+        colour = QColor(theme.GHOST_COLOUR)
+        colour.setAlphaF(alpha)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(colour)
+        painter.drawEllipse(at, radius, radius)
+
+    def _paint_counterpart(self, painter: QPainter, counterpart: Counterpart) -> None:
+        """Paint a ring around the landmark that the other side's ghost stands for."""
+        position = counterpart.position
+        ((x, y),), (hidden,) = self._project([position]), self._are_hidden([position])
+        at, radius = QPointF(x, y), self._signs.radius + HALO
+        painter.setOpacity(0.5 if hidden else 1.0)
+        draw_ghost(painter, at, radius)
+        draw_label(painter, counterpart.name, at, self.room_at(at), radius)
+        painter.setOpacity(1.0)
 
     def _paint_star(self, painter: QPainter, star: Star) -> None:
         """Paint a star in a dotted ring where the next landmark helps most."""

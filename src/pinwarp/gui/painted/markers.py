@@ -13,6 +13,7 @@ from pinwarp.gui.style import theme
 
 RADIUS = 6.0
 STAR_RADIUS = 11.0
+GHOST_RADIUS = 8.0
 # By how much the ring around a selected one is wider.
 HALO = 5.0
 # How much is seen of what lies behind the surface.
@@ -30,8 +31,9 @@ def marker_pixmap(
 ) -> QPixmap:
     """Return the picture of a landmark, :func:`extent` logical pixels wide.
 
-    Paired is a filled disc, half-placed a hollow ring, a passenger a diamond, a disabled one a
-    grey disc with a bar. Behind the surface all are faint.
+    Paired is a filled disc, one that is only suggested a disc filled by half, half-placed a hollow
+    ring, a passenger a diamond, a disabled one a grey disc with a bar. Behind the surface all are
+    faint.
     """
     width = extent(radius)
     pixmap = QPixmap(round(width * ratio), round(width * ratio))
@@ -54,6 +56,14 @@ def marker_pixmap(
                 painter.drawEllipse(centre, radius, radius)
                 painter.setPen(QPen(colour, 2.8))
                 painter.drawEllipse(centre, radius, radius)
+            case LandmarkState.SUGGESTED:
+                painter.setPen(outline)
+                painter.setBrush(QColor(theme.PAPER))
+                painter.drawEllipse(centre, radius, radius)
+                painter.setBrush(QBrush(colour))
+                circle = QRectF(centre.x() - radius, centre.y() - radius, 2 * radius, 2 * radius)
+                # Its lower half; Qt counts in sixteenths of a degree, from three o'clock.
+                painter.drawChord(circle, 180 * 16, 180 * 16)
             case LandmarkState.PASSENGER:
                 painter.setPen(outline)
                 painter.setBrush(QBrush(colour))
@@ -82,6 +92,17 @@ def state_icon(state: LandmarkState) -> QIcon:
     return icon
 
 
+def draw_ghost(painter: QPainter, at: QPointF, radius: float) -> None:
+    """Draw a dotted ring: a place that asks for a landmark."""
+    for pen in (
+        QPen(QColor(theme.PAPER), 4),
+        QPen(QColor(theme.GHOST_COLOUR), 2, Qt.PenStyle.DotLine),
+    ):
+        painter.setPen(pen)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawEllipse(at, radius, radius)
+
+
 def draw_star(painter: QPainter, at: QPointF) -> None:
     """Draw a star in a dotted ring: a place that asks for a landmark."""
     angles = [math.pi * (i / 5 - 0.5) for i in range(10)]
@@ -92,13 +113,7 @@ def draw_star(painter: QPainter, at: QPointF) -> None:
             for angle, length in zip(angles, lengths, strict=True)
         ]
     )
-    for pen in (
-        QPen(QColor(theme.PAPER), 4),
-        QPen(QColor(theme.GHOST_COLOUR), 2, Qt.PenStyle.DotLine),
-    ):
-        painter.setPen(pen)
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.drawEllipse(at, STAR_RADIUS, STAR_RADIUS)
+    draw_ghost(painter, at, STAR_RADIUS)
     painter.setPen(QPen(QColor(theme.PAPER), 1.2))
     painter.setBrush(QColor(theme.GHOST_COLOUR))
     painter.drawPolygon(star)

@@ -25,6 +25,7 @@ _ASKS = {
     LandmarkState.SOURCE_ONLY: "click it on the destination",
     LandmarkState.DESTINATION_ONLY: "click it on the source",
     LandmarkState.PAIRED: "placed on both bones",
+    LandmarkState.SUGGESTED: "only suggested on the destination",
 }
 
 

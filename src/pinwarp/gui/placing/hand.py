@@ -11,7 +11,9 @@ from pinwarp.core.landmarks import Landmark, Role, Side, as_position
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.drawn.surface import Surface
+from pinwarp.gui.placing.first_seen import FirstSeen
 from pinwarp.gui.placing.ghosts import Ghosts
+from pinwarp.gui.views.controls import ViewControls
 from pinwarp.gui.views.viewport import Viewport
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
@@ -39,6 +41,8 @@ class Hand(Capability):
         Where the hand is.
     ghosts
         What a click fills, and where it is expected.
+    views
+        Turn so that a ghost is seen.
     """
 
     refused = isolated(str)
@@ -48,10 +52,12 @@ class Hand(Capability):
         editor: Editor,
         viewports: dict[Side, Viewport],
         ghosts: Ghosts,
+        views: ViewControls,
     ) -> None:
         self._editor = editor
         self._viewports = viewports
         self._ghosts = ghosts
+        self.first_seen = FirstSeen(views, viewports, self.refused.emit)
         self._others: list[tuple[Callable[[bool], bool], Callable[[], bool]]] = []
         self.snap_action = Action(
             "snap",
@@ -139,6 +145,9 @@ class Hand(Capability):
         viewport.surface_clicked.connect(lambda position: self.place(side, position))
         viewport.surface_ctrl_clicked.connect(lambda position: self.add_passenger(side, position))
         viewport.background_clicked.connect(editor.select)
+        viewport.ghost_clicked.connect(
+            lambda name, position: self.click_ghost(name, side, position)
+        )
         viewport.landmark_clicked.connect(lambda name: editor.select(name, side=side))
         viewport.landmark_dragged.connect(lambda name, position: self.drag(name, side, position))
         viewport.landmark_dropped.connect(self.drop)
@@ -153,7 +162,7 @@ class Hand(Capability):
         editor = self._editor
         if self._is_locked():
             return
-        guided = editor.view.guided
+        guided, target = editor.view.guided, self._ghosts.target(side)
         landmark = editor.committed.landmark(guided) if guided else None
         if landmark is not None and landmark.position(side) is not None:
             self.refused.emit(
@@ -165,7 +174,7 @@ class Hand(Capability):
             editor.committed,
             side,
             as_position(position),
-            target=guided,
+            target=target,
             pattern=editor.view.name_pattern,
         )
         self._placed(session, f"Place {name}", name, side)
@@ -192,8 +201,7 @@ class Hand(Capability):
         """Place the landmark that a ghost predicts, on the side that was worked on last if any."""
         if any(accept(True) for accept, _ in self._others):
             return
-        side = self._editor.selection.side
-        ghost = self._ghosts.at(side.other) or self._ghosts.at(side)
+        ghost = self._ghosts.next(self._editor.selection.side)
         if ghost is None:
             if any(accept(False) for accept, _ in self._others):
                 return
@@ -202,7 +210,7 @@ class Hand(Capability):
                 "shows its ghost on the other."
             )
             return
-        if self._is_locked():
+        if self._is_locked() or not self.first_seen.is_seen(ghost.name, ghost.side, ghost.position):
             return
         session = edits.move(self._editor.committed, ghost.name, ghost.side, ghost.position)
         self._placed(session, f"Accept {ghost.name}", ghost.name, ghost.side)
@@ -237,8 +245,23 @@ class Hand(Capability):
             editor.preview(edits.move(editor.committed, name, side, as_position(position)))
 
     def drop(self, name: str) -> None:
-        """Leave a dragged landmark where it is."""
-        self._editor.commit(self._editor.session, f"Move {name}")
+        """Leave a dragged landmark, or ghost, where it is."""
+        editor = self._editor
+        if not editor.is_previewing:
+            # It may be locked.
+            return
+        landmark, side = editor.committed.landmark(name), editor.selection.side
+        if landmark is not None and landmark.position(side) is None:
+            self._placed(editor.session, f"Place {name}", name, side)
+        else:
+            editor.commit(editor.session, f"Move {name}")
+
+    def click_ghost(self, name: str, side: Side, position: Iterable[float] | None) -> None:
+        """Place the next landmark where its ghost was clicked; of others, choose which is next."""
+        if name != self._ghosts.target(side):
+            self._editor.select(name, side=side)
+        elif position is not None:
+            self.place(side, position)
 
     def swap_destinations(self, names: Sequence[str]) -> None:
         """Exchange the destinations of two landmarks."""

@@ -179,6 +179,21 @@ class Arrows:
     arrows: tuple[Arrow, ...]
 
 
+@dataclass(frozen=True)
+class OtherGhosts:
+    """Where further landmarks are expected, besides the next one."""
+
+    ghosts: tuple[Ghost, ...]
+
+
+@dataclass(frozen=True)
+class Counterpart:
+    """Where the landmark is on this side that the other side's ghost stands for."""
+
+    name: str
+    position: Position
+
+
 class DotKind(IntEnum):
     """What became of a semilandmark."""
 
@@ -351,6 +366,6 @@ class Badge:
 
 Rendered = Bone | Cut | Motion | Overlay | Colouring | FoldedSurface | GridLines
 Semilandmarks = Dots | Paths | Handles | Slides
-Signs = Markers | Arrows | Ghost | Star | Semilandmarks
+Signs = Markers | Arrows | Ghost | OtherGhosts | Counterpart | Star | Semilandmarks
 Painted = Signs | Legend | Caption | ScaleBar | Hint | Badge | ToolWords
 Drawable = Rendered | Painted

@@ -24,6 +24,7 @@ PAPER = "#ffffff"
 
 STATE_COLOURS = {
     LandmarkState.PAIRED: "#009E73",
+    LandmarkState.SUGGESTED: "#0072B2",
     LandmarkState.SOURCE_ONLY: "#D55E00",
     LandmarkState.DESTINATION_ONLY: "#D55E00",
     LandmarkState.PASSENGER: "#CC79A7",

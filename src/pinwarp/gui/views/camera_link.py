@@ -74,6 +74,13 @@ class CameraLink:
             return None
         return self._relation().rotation
 
+    def lead(self, side: Side, pose: Pose) -> None:
+        """Put one camera somewhere; the other follows, as it follows a hand."""
+        self._leader = side
+        # First, while the relation of both is still known.
+        self._follow(side, pose)
+        self._views[side].set_pose(pose)
+
     @contextmanager
     def on_their_own(self) -> Iterator[None]:
         """Move cameras one by one, and keep the relation that comes of it."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import weakref
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from typing import TypeVar
 
 import numpy as np
@@ -33,6 +33,7 @@ from pinwarp.gui.scene.drawables import (
 )
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.scene.sight import through_ball
+from pinwarp.gui.scene.turning import turned_to_see
 from pinwarp.gui.style import theme
 from pinwarp.gui.views.sighted_view import NOWHERE, SightedView
 
@@ -47,6 +48,9 @@ OUTLINE_REACH = 6
 # How the surface beside a line of sight is found: places looked at first, turns at most, when it
 # has settled (in diagonals of the bone), and how near to the outline (in pixels).
 NEAR_PLACES, TURNS, SETTLED, OUTLINE = 5000, 30, 1e-5, 0.25
+# What is no further from what the camera looks at stays in a view however the camera turns: a share
+# of half the height that is seen.
+IN_REACH = 0.9
 
 
 class Canvas(SightedView):
@@ -322,6 +326,23 @@ class Canvas(SightedView):
         shares = (0.05, 0.25, 0.5, 0.75, 0.95)
         spots = [QPointF(self.width() * x, self.height() * y) for x in shares for y in shares]
         return any(self.pick(spot) is not None for spot in spots)
+
+    def sees(self, position: Sequence[float]) -> bool:
+        """Whether a position is in the view, and no bone before it."""
+        sight, place = self.sight, np.array([position])
+        if sight is None or not (np.abs(sight.places(place)) <= 1).all():
+            return False
+        return not self.behind_surface(place)[0]
+
+    def pose_to_see(self, position: Sequence[float]) -> Pose:
+        """Return where the camera sees a position, turned by as little as that takes."""
+        pose, surface, place = Pose.of(self.camera), self.surface, np.array(position)
+        if not pose.is_proper or surface is None:
+            return pose
+        sight = self.sight
+        half = 0.0 if sight is None else sight.units_per_height(pose.focal_point)
+        in_reach = bool(np.linalg.norm(place - pose.focal_point) < IN_REACH * half)
+        return turned_to_see(pose, place, surface.hidden, in_reach=in_reach)
 
     def behind_surface(self, positions: NDArray) -> NDArray[np.bool_]:
         """Return which positions the mesh hides from the camera."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -348,6 +348,14 @@ class ViewControls(Capability):
                 near = half_height / np.tan(np.radians(view.camera.GetViewAngle()) / 2)
                 # Whoever has zoomed in further stays there.
                 view.set_pose(pose.focused(centre, min(pose.distance, float(near))))
+
+    def show_place(self, side: Side, position: Sequence[float]) -> bool:
+        """Turn a view until a position is seen; False where it is seen already."""
+        view = self._views[side]
+        if view.sees(position):
+            return False
+        self.link.lead(side, view.pose_to_see(position))
+        return True
 
     def _targets(self) -> dict[Side, Matrix]:
         """Return where the selected landmarks are; the pairs guess the side that is missing."""

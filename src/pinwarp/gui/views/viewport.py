@@ -17,6 +17,7 @@ from pinwarp.gui.drawn.surfaces import Surfaces
 from pinwarp.gui.scene.drawables import CurveHandle, Marker
 from pinwarp.gui.views.canvas import OUTLINE_REACH, Canvas
 from pinwarp.gui.views.tool import Tool
+from pinwarp.session.warp.ghost import Ghost
 
 # A press released within SLOP pixels is a click; one begun within REACH of a landmark
 # or a handle grabs it.
@@ -38,7 +39,7 @@ class _Press:
 
     at: QPointF
     event: QMouseEvent
-    grip: Marker | CurveHandle | None
+    grip: Marker | CurveHandle | Ghost | None
     offset: QPointF
     dragging: bool = False
     twice: bool = False
@@ -47,7 +48,8 @@ class _Press:
 class Viewport(Canvas):
     """The picture of one side.
 
-    Positions in signals are (3,) arrays in the mesh's frame and unit. A handle comes with its curve
+    Positions in signals are (3,) arrays in the mesh's frame and unit. That of a clicked ghost is
+    where the bone was clicked; None beside it. A handle comes with its curve
     and number, and while it is dragged with the landmark that it is dragged onto, if any.
 
     Attributes
@@ -63,6 +65,7 @@ class Viewport(Canvas):
     landmark_clicked = Signal(str)
     landmark_dragged = Signal(str, object)
     landmark_dropped = Signal(str)
+    ghost_clicked = Signal(str, object)
     handle_clicked = Signal(str, int)
     handle_dragged = Signal(str, int, object, str)
     handle_dropped = Signal(str, int)
@@ -114,7 +117,9 @@ class Viewport(Canvas):
         moved = event.position() - press.at
         if not press.dragging and max(abs(moved.x()), abs(moved.y())) <= SLOP:
             return
-        stays = press.grip is None or not press.grip.movable or self.tool is not None
+        grip = press.grip
+        fixed = isinstance(grip, Marker | CurveHandle) and not grip.movable
+        stays = grip is None or fixed or self.tool is not None
         if stays and not press.dragging:
             self._press = None
             self._pass_on(press.event, QEvent.Type.MouseButtonPress, Qt.MouseButton.LeftButton)
@@ -154,6 +159,8 @@ class Viewport(Canvas):
         elif isinstance(grip, CurveHandle):
             done = self.handle_dropped if press.dragging else self.handle_clicked
             done.emit(grip.curve, grip.number)
+        elif isinstance(grip, Ghost) and not press.dragging:
+            self.ghost_clicked.emit(grip.name, self.pick(press.at))
         elif grip is not None:
             (self.landmark_dropped if press.dragging else self.landmark_clicked).emit(grip.name)
         elif (position := self.pick(press.at, OUTLINE_REACH)) is not None:
@@ -162,9 +169,14 @@ class Viewport(Canvas):
         else:
             self.background_clicked.emit()
 
-    def _grip(self, at: QPointF) -> Marker | CurveHandle | None:
-        """Return what a press grabs; a landmark before a handle of a curve."""
-        return self.layer.nearest(at, REACH) or self.layer.nearest_handle(at, REACH)
+    def _grip(self, at: QPointF) -> Marker | CurveHandle | Ghost | None:
+        """Return what a press grabs; a landmark before a handle of a curve, this before a ghost."""
+        layer = self.layer
+        return (
+            layer.nearest(at, REACH)
+            or layer.nearest_handle(at, REACH)
+            or layer.nearest_ghost(at, REACH)
+        )
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         """Treat a second quick click as a click of its own: it must not get lost."""

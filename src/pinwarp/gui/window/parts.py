@@ -30,6 +30,7 @@ from pinwarp.gui.placing.bone_edits import BoneEdits
 from pinwarp.gui.placing.ghosts import Ghosts
 from pinwarp.gui.placing.guidance import Guidance
 from pinwarp.gui.placing.hand import Hand
+from pinwarp.gui.placing.reviewing import Reviewing
 from pinwarp.gui.refining.presenter import RefiningPresenter
 from pinwarp.gui.semilandmarks.presenter import Semilandmarks
 from pinwarp.gui.table.presenter import TablePresenter
@@ -85,9 +86,11 @@ class Parts:
         self.shown_session = ShownSession(editor, scenes, self.warps, self.quality)
         self.views = ViewControls(editor, views, scenes, say, frame)
         self.ghosts = Ghosts(editor, self.warps, surfaces)
-        self.hand = Hand(editor, views, self.ghosts)
+        self.hand = Hand(editor, views, self.ghosts, self.views)
         self.bones = BoneEdits(editor, say)
         self.guidance = Guidance(editor, self.hand, self.ghosts, tasks)
+        self.reviewing = Reviewing(editor, self.hand, destination)
+        self.guidance.give_way_to(lambda: self.reviewing.words)
         self.table = TablePresenter(editor, self.warps, self.hand, dialogs, say)
         self.grid = GridPresenter(editor, self.warps, scenes, frame)
         self.warp = WarpPresenter(editor, self.quality, self.grid.following.keys, say, frame)
@@ -116,6 +119,7 @@ class Parts:
             self.table,
             self.hand,
             self.bones,
+            self.reviewing,
             self.views,
             self.undoing.undo.keys,
             say,
