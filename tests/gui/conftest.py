@@ -12,6 +12,7 @@ import pytest
 from qtpy.QtCore import QEvent, QPoint, QPointF, QSettings, Qt, QTimer
 from qtpy.QtTest import QTest
 from qtpy.QtWidgets import QApplication
+from tests.gui.guesses import Guesser
 from vtkmodules.vtkCommonCore import vtkObjectBase
 
 from pinwarp.core.landmarks import Side
@@ -343,3 +344,11 @@ def sample_copy(tmp_path) -> Path:
     for name in ("femur_generic.ply", "femur_subject.ply"):
         shutil.copy(assets_folder() / name, folder / name)
     return Path(shutil.copy(sample_session(), folder))
+
+
+@pytest.fixture
+def guesser(monkeypatch) -> Guesser:
+    """Answers in place of the first guess, which takes seconds."""
+    guesser = Guesser()
+    monkeypatch.setattr("pinwarp.gui.suggesting.run.suggest", guesser)
+    return guesser

@@ -95,7 +95,7 @@ def picture_steps(order: PictureOrder, views: Mapping[Side, Canvas]) -> Steps:
     image.fill(Qt.GlobalColor.transparent)
     places = _places(order)
     for side, place in places.items():
-        _paint_landmarks(image, order, views[side], place)
+        _paint_signs(image, views[side], _painted(order, views[side]), place)
     copies = {side: Offscreen(views[side], views[side].scene) for side in order.sides}
     yield 0.0, "rendering"
     try:
@@ -109,9 +109,38 @@ def picture_steps(order: PictureOrder, views: Mapping[Side, Canvas]) -> Steps:
         for copy in copies.values():
             copy.close()
     if not order.transparent:
-        with _below(image) as painter:
-            painter.fillRect(image.rect(), background(order.height))
+        _paint_background(image)
     return image
+
+
+def picture_of(view: Canvas, scene: Scene, width: int, height: int) -> QImage:
+    """Return a small picture of another scene than a view shows, seen from where that is seen.
+
+    Parameters
+    ----------
+    view
+        From where.
+    scene
+        What is rendered and painted.
+    width, height
+        In pixels.
+    """
+    image = QImage(width, height, _FORMAT)
+    image.fill(Qt.GlobalColor.transparent)
+    _paint_signs(image, view, scene, image.rect())
+    copy = Offscreen(view, scene)
+    try:
+        for tile in copy.tiles(width, height):
+            _paint_below(image, image.rect(), tile)
+    finally:
+        copy.close()
+    _paint_background(image)
+    return image
+
+
+def _paint_background(image: QImage) -> None:
+    with _below(image) as painter:
+        painter.fillRect(image.rect(), background(image.height()))
 
 
 def _below(image: QImage) -> QPainter:
@@ -151,15 +180,14 @@ def _places(order: PictureOrder) -> dict[Side, QRect]:
     }
 
 
-def _paint_landmarks(image: QImage, order: PictureOrder, view: Canvas, place: QRect) -> None:
-    """Paint a view's landmarks, title and scale bar as they are now."""
+def _paint_signs(image: QImage, view: Canvas, scene: Scene, place: QRect) -> None:
+    """Paint the landmarks, title and scale bar of a scene over a place in a picture."""
     width, height = max(1, view.width()), max(1, view.height())
     scale = min(place.width() / width, place.height() / height)
     layer = MarkerLayer(view, view)
     layer.resize(round(place.width() / scale), round(place.height() / scale))
     layer.offset = ((layer.width() - width) / 2, (layer.height() - height) / 2)
     layer.pixels_per_pixel = scale / layer.devicePixelRatioF()
-    scene = _painted(order, view)
     # Colours without it say little.
     legend = PaintedLegend(layer)
     legend.show_content(scene.of(Legend))

@@ -94,10 +94,10 @@ class MarkerLayer(QWidget):
             Handles: self._paint_handles,
             Star: self._paint_star,
             OtherGhosts: self._paint_other_ghosts,
-            Ghost: self._paint_ghost,
-            Counterpart: self._paint_counterpart,
             Arrows: self._paint_arrows,
             Markers: self._paint_markers,
+            Counterpart: self._paint_counterpart,
+            Ghost: self._paint_ghost,
             Badge: self._paint_badge,
             ToolWords: self._paint_tool_words,
         }
@@ -301,9 +301,12 @@ class MarkerLayer(QWidget):
         for ghost, place, out in zip(others.ghosts, places, hidden, strict=True):
             painter.setOpacity(FAINT if out else 1.0)
             self._paint_doubt(painter, ghost, QPointF(*place), 0.1)
-        for place, out in zip(places, hidden, strict=True):
+        for ghost, place, out in zip(others.ghosts, places, hidden, strict=True):
             painter.setOpacity(FAINT if out else 1.0)
             draw_ghost(painter, QPointF(*place), GHOST_RADIUS - 3)
+            if ghost.name == others.labelled:
+                at = QPointF(*place)
+                draw_label(painter, f"{ghost.name}?", at, self.room_at(at))
         painter.setOpacity(1.0)
 
     def _paint_doubt(self, painter: QPainter, ghost: Ghost, at: QPointF, alpha: float) -> None:

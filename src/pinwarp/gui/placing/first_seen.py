@@ -18,14 +18,14 @@ class FirstSeen:
         Turn.
     canvases
         Where one looks.
-    say
-        Tells that the view has turned.
+    turned
+        Called with the landmark for which a view has turned.
     """
 
     def __init__(
-        self, views: ViewControls, canvases: Mapping[Side, Canvas], say: Callable[[str], None]
+        self, views: ViewControls, canvases: Mapping[Side, Canvas], turned: Callable[[str], None]
     ) -> None:
-        self._views, self._canvases, self._say = views, canvases, say
+        self._views, self._canvases, self._turned = views, canvases, turned
         self._shown: tuple[str, Side, Hashable] | None = None
 
     def is_seen(self, name: str, side: Side, position: Position) -> bool:
@@ -37,5 +37,5 @@ class FirstSeen:
         if not self._views.show_place(side, position):
             return True
         self._shown = (name, side, canvas.view_key())
-        self._say(f"{name} was out of sight: the view has turned. The same key again takes it.")
+        self._turned(name)
         return False

@@ -94,7 +94,7 @@ class Ghosts(Capability):
         if side is Side.DESTINATION:
             others = tuple(other for other in self._expected() if other != ghost)
             if others:
-                yield OtherGhosts(others)
+                yield OtherGhosts(others, self._editor.view.hovered)
         elif (landmark := self._expected_next()) is not None and landmark.source is not None:
             yield Counterpart(landmark.name, landmark.source)
 

@@ -57,7 +57,7 @@ class Hand(Capability):
         self._editor = editor
         self._viewports = viewports
         self._ghosts = ghosts
-        self.first_seen = FirstSeen(views, viewports, self.refused.emit)
+        self.first_seen = FirstSeen(views, viewports, self._tell_turned)
         self._others: list[tuple[Callable[[bool], bool], Callable[[], bool]]] = []
         self.snap_action = Action(
             "snap",
@@ -214,6 +214,11 @@ class Hand(Capability):
             return
         session = edits.move(self._editor.committed, ghost.name, ghost.side, ghost.position)
         self._placed(session, f"Accept {ghost.name}", ghost.name, ghost.side)
+
+    def _tell_turned(self, name: str) -> None:
+        self.refused.emit(
+            f"{name} was out of sight: the view has turned, {self.accept_action.keys} accepts it."
+        )
 
     def _placed(self, session: Session, label: str, name: str, side: Side) -> None:
         editor = self._editor

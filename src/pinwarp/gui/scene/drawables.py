@@ -181,9 +181,10 @@ class Arrows:
 
 @dataclass(frozen=True)
 class OtherGhosts:
-    """Where further landmarks are expected, besides the next one."""
+    """Where further landmarks are expected, besides the next one, and which one has its name."""
 
     ghosts: tuple[Ghost, ...]
+    labelled: str | None = None
 
 
 @dataclass(frozen=True)

@@ -16,18 +16,22 @@ _DIRECTIONS = 600
 # A place is looked at from no further than this off the middle of where it is seen from: beyond,
 # it would lie at the bone's edge in the picture. The cosine of 60 degrees.
 _LEAST_COSINE = 0.5
-# Nearer to the line of sight than this (a sine), the old up tells no new one.
+# Nearer to the line of sight than this (a sine), what was up tells no new up.
 _LEAST_UPRIGHT = 0.3
 
 
 def turned_to_see(
     pose: Pose,
     place: Matrix,
+    axis: Matrix,
     is_hidden: Callable[[Matrix, Matrix], NDArray[np.bool_]],
     *,
     in_reach: bool,
 ) -> Pose:
-    """Return a pose that sees a place, turned from another one by as little as that takes.
+    """Return a pose that sees a place, turned from another one by little.
+
+    The less it turns the better, and the less the bone is foreshortened: rather around its long
+    axis than over its end.
 
     Parameters
     ----------
@@ -35,6 +39,8 @@ def turned_to_see(
         A proper one.
     place
         (3,) where to look.
+    axis
+        (3,) unit vector along the bone.
     is_hidden
         Called with (n, 3) eyes and (n, 3) places: which of these their eyes do not see.
     in_reach
@@ -50,9 +56,10 @@ def turned_to_see(
     --------
     >>> before = Pose(np.array([0.0, 0.0, 9.0]), np.zeros(3), np.array([0.0, 1.0, 0.0]))
     >>> behind = lambda eyes, places: (eyes * places).sum(axis=1) < 1
-    >>> after = turned_to_see(before, np.array([0.0, 0.0, -1.0]), behind, in_reach=True)
-    >>> bool(after.position[2] < -4), round(after.distance, 6)
-    (True, 9.0)
+    >>> place, along = np.array([0.0, 0.0, -1.0]), np.array([0.0, 1.0, 0.0])
+    >>> after = turned_to_see(before, place, along, behind, in_reach=True)
+    >>> bool(after.position[2] < -4), bool(abs(after.position[1]) < 1), round(after.distance, 6)
+    (True, True, 9.0)
     """
     focus = pose.focal_point if in_reach else place
     towards = _even_directions()
@@ -65,11 +72,18 @@ def turned_to_see(
     faces = seen & (towards @ middle >= _LEAST_COSINE)
     if not faces.any():
         faces = seen
-    back = towards[np.argmax(np.where(faces, towards @ pose.frame[:, 2], -np.inf))]
-    up = pose.frame[:, 1]
-    if np.linalg.norm(np.cross(up, back)) < _LEAST_UPRIGHT:
-        # Over the pole: what was towards the eye, or away from it, comes up.
-        up = -np.sign(up @ back) * pose.frame[:, 2]
+    turn = np.arccos(np.clip(towards @ pose.frame[:, 2], -1.0, 1.0))
+    foreshortened = np.abs(np.arcsin(np.clip(towards @ axis, -1.0, 1.0)))
+    back = towards[np.argmin(np.where(faces, turn + foreshortened, np.inf))]
+    # Upright as before, unless it lay down.
+    up = next(
+        (
+            one
+            for one in (np.copysign(1.0, axis @ pose.frame[:, 1]) * axis, *pose.frame.T[[1, 0]])
+            if np.linalg.norm(np.cross(one, back)) > _LEAST_UPRIGHT
+        ),
+        pose.frame[:, 1],
+    )
     return replace(pose, position=focus + pose.distance * back, focal_point=focus, up=up)
 
 

@@ -337,12 +337,14 @@ class Canvas(SightedView):
     def pose_to_see(self, position: Sequence[float]) -> Pose:
         """Return where the camera sees a position, turned by as little as that takes."""
         pose, surface, place = Pose.of(self.camera), self.surface, np.array(position)
-        if not pose.is_proper or surface is None:
+        bone = self.bone
+        if not pose.is_proper or surface is None or bone is None:
             return pose
         sight = self.sight
         half = 0.0 if sight is None else sight.units_per_height(pose.focal_point)
         in_reach = bool(np.linalg.norm(place - pose.focal_point) < IN_REACH * half)
-        return turned_to_see(pose, place, surface.hidden, in_reach=in_reach)
+        axis = best_frame(bone.bounds_size)[:, 1]
+        return turned_to_see(pose, place, axis, surface.hidden, in_reach=in_reach)
 
     def behind_surface(self, positions: NDArray) -> NDArray[np.bool_]:
         """Return which positions the mesh hides from the camera."""

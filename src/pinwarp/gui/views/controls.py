@@ -84,6 +84,8 @@ class ViewControls(Capability):
         self._views = views
         self._fitted_for: tuple[Landmark, ...] | None = None
         self._fit: Similarity | None = None
+        self._expected: Callable[[], Similarity | None] = lambda: None
+        self._expected_fit: Similarity | None = None
         self.section_slider = _section_slider()
         self._surfaces = self._surfaces_now()
         self._pairs = 0
@@ -238,8 +240,21 @@ class ViewControls(Capability):
     def _surfaces_now(self) -> list[object]:
         return [view.surface for view in self._views.values()]
 
+    def follow(self, expected: Callable[[], Similarity | None]) -> None:
+        """Let somebody else tell how source maps to destination, where the pairs do not."""
+        self._expected = expected
+
     def pairing_fit(self) -> Similarity | None:
-        """Return how the pairs map source to destination; the same object for the same pairs."""
+        """Return how the pairs map source to destination, else how somebody expects it.
+
+        The same object for the same pairs.
+        """
+        fit = self._fit_of_pairs()
+        if fit is None and not _same(expected := self._expected(), self._expected_fit):
+            self._expected_fit = expected
+        return self._expected_fit if fit is None else fit
+
+    def _fit_of_pairs(self) -> Similarity | None:
         landmarks = self._editor.session.landmarks
         if landmarks is not self._fitted_for:
             pairs = self._editor.session.pairs

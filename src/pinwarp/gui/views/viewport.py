@@ -207,7 +207,9 @@ class Viewport(Canvas):
 
     def _hover(self, at: QPointF) -> None:
         grip = self._grip(at)
-        name = grip.name if isinstance(grip, Marker) else None
+        # The next ghost has its name already, and a click does something else there.
+        told = grip if grip != self.drawn(Ghost) else None
+        name = told.name if isinstance(told, Marker | Ghost) else None
         if self.tool is not None:
             self.tool.hover(self, at)
         if grip is not None:

@@ -15,6 +15,7 @@ from pinwarp.gui.window.help_text import (
     ABOUT_QUALITY,
     ABOUT_REFINING,
     ABOUT_SEMILANDMARKS,
+    ABOUT_SUGGESTING,
 )
 
 
@@ -77,6 +78,12 @@ class Help(Capability):
                 "About &Refining",
                 lambda: dialogs.tell("About refining to the surface", ABOUT_REFINING),
                 at="Help.24",
+            ),
+            Action(
+                "about_suggesting",
+                "About S&uggestions",
+                lambda: dialogs.tell("About suggestions", ABOUT_SUGGESTING),
+                at="Help.25",
             ),
             Action(
                 "copy_details",

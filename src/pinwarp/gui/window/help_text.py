@@ -73,3 +73,23 @@ counterpart: it is <b>freed</b>, drawn hollow, and takes no part. One that is kn
 suspect; that of the landmarks is found while they slide on. As they were put on the surface, a
 small <b>distance</b> to it proves nothing: maps say <i>fitted</i>.</p>
 """
+
+ABOUT_SUGGESTING = """
+<p><b>Suggest All</b> (Ctrl+G) finds the destination's pose, unit and hand from its shape, warps the
+source onto it, and shows a <b>ghost</b> for every landmark that the destination lacks. A ghost is
+no landmark: <b>Space</b> accepts the next one, which has its name beside it; where the bone hides
+it the view turns first, and the second press accepts. A click puts it elsewhere, a drag moves any
+of them, a click on another one makes that the next. Whatever you accept or put right moves the
+others. <b>Esc</b> puts the ghosts away.</p>
+<p>The disc around a ghost is its <b>doubt</b>: most lie within it, few twice as far. It is one for
+the whole bone, since nothing tells the doubt of a single place honestly, and it follows what you
+accept. That a ghost looks right does not make it right: compare with the source, where a ring
+marks the same landmark.</p>
+<p>A bone that is nearly its own mirror image does not tell its side of the body. Then you are
+asked, with a picture of each; where it is the other side, the source is mirrored. Where the
+surfaces fit badly there are no ghosts, and the reason is told. That a bone is only <b>a part</b>
+must be said: no ghost is shown beyond its rim.</p>
+<p>Landmarks that <i>pinwarp suggest</i> or a batch has placed are marked as <b>suggested</b> (a
+disc filled by half) until you have looked at them: Space confirms the selected one and goes on to
+the next.</p>
+"""

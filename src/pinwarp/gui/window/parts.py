@@ -33,6 +33,7 @@ from pinwarp.gui.placing.hand import Hand
 from pinwarp.gui.placing.reviewing import Reviewing
 from pinwarp.gui.refining.presenter import RefiningPresenter
 from pinwarp.gui.semilandmarks.presenter import Semilandmarks
+from pinwarp.gui.suggesting.presenter import Suggesting
 from pinwarp.gui.table.presenter import TablePresenter
 from pinwarp.gui.tasks.file_tasks import FileTasks
 from pinwarp.gui.views.controls import ViewControls
@@ -111,6 +112,18 @@ class Parts:
         )
         self.refining = RefiningPresenter(
             editor, self.warps, self.maps, scenes, frame.long_jobs, say, frame
+        )
+        self.suggesting = Suggesting(
+            editor,
+            self.ghosts,
+            self.hand,
+            self.guidance,
+            self.views,
+            views,
+            scenes,
+            surfaces,
+            say,
+            frame,
         )
         self.findings = FindingsPresenter(
             editor,

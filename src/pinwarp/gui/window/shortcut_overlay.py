@@ -16,6 +16,7 @@ _MOUSE: Lines = [
     ("Click a landmark", "select it everywhere"),
     ("Drag a landmark", "slide it over the bone (Esc puts it back)"),
     ("Shift+drag a landmark", "move it in the view plane, off the bone"),
+    ("Click or drag a ghost", "make it the next one, or put it right"),
     ("Drag a handle of a curve", "shape it; onto a landmark anchors it there"),
     ("Arrow keys", "nudge the selection (Shift: ten times as far)"),
     ("Drag, wheel, right drag", "orbit, zoom, pan"),
