@@ -21,6 +21,8 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
+from pinwarp.core.landmarks import Side
+
 # Of text, and of what is pressed or moved, against what is around (WCAG 2.2, 1.4.3 and 1.4.11).
 READABLE, VISIBLE = 4.5, 3.0
 WITH_WORDS = (QLabel, QAbstractButton)
@@ -176,3 +178,21 @@ def test_a_pressed_in_button_is_unlike_one_that_is_not(sample, kind):
     assert contrast(*values) >= 1.2
     button.setParent(None)
     button.deleteLater()
+
+
+def test_the_background_of_the_views_follows_the_theme_or_the_menu(sample, theme):
+    canvas = sample.window.viewports[Side.DESTINATION]
+
+    def brightness() -> float:
+        return float(np.median(luminances(pixels(canvas)[60:90, 5:60])))
+
+    is_dark = theme == "dark"
+    assert (brightness() < 0.1) == is_dark
+    caption = pixels(canvas)[5:40, 8:120]
+    assert greatest_contrast(caption) >= READABLE
+    sample.trigger("background_light" if is_dark else "background_dark")
+    assert (brightness() < 0.1) == (not is_dark)
+    caption = pixels(canvas)[5:40, 8:120]
+    assert greatest_contrast(caption) >= READABLE
+    sample.trigger("background_theme")
+    assert (brightness() < 0.1) == is_dark

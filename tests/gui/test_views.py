@@ -416,7 +416,7 @@ def test_landmarks_on_the_part_that_is_cut_away_are_faint_and_cannot_be_grabbed(
     assert not layer.hidden()[0]
     user.press(Qt.Key.Key_X)
     assert layer.hidden()[0]
-    slider = user.window.parts.views.section_slider
+    slider = user.window.parts.looks.section_slider
     user.drag(slider, slider.rect().center(), QPoint(2, slider.height() // 2))
     assert user.editor.view.section == 0
     assert not layer.hidden()[0]

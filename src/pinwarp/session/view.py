@@ -29,6 +29,14 @@ class LinkMode(StrEnum):
     FREE = "free"
 
 
+class Background(StrEnum):
+    """What is behind the bones."""
+
+    THEME = "theme"
+    LIGHT = "light"
+    DARK = "dark"
+
+
 class GridKind(StrEnum):
     """Which regular grid is drawn through the source and, warped, over the destination."""
 
@@ -80,6 +88,8 @@ class ViewState:
         Of the landmarks' signs, in logical pixels.
     wireframe
         Whether the bones are drawn as edges only.
+    background
+        What is behind the bones.
     section
         Share of the depth that the cross-section clips away; None without a cross-section.
     grid, grid_share
@@ -108,6 +118,7 @@ class ViewState:
     link: LinkMode = LinkMode.LINKED
     marker_radius: float = 6.0
     wireframe: bool = False
+    background: Background = Background.THEME
     section: float | None = None
     grid: GridKind = GridKind.NONE
     grid_share: float = 0.5
@@ -139,6 +150,7 @@ class ViewChanges(TypedDict, total=False):
     link: LinkMode
     marker_radius: float
     wireframe: bool
+    background: Background
     section: float | None
     grid: GridKind
     grid_share: float

@@ -13,10 +13,10 @@ MARGIN = 12
 MOST_WIDTH = 420
 _STYLE = f"""
     QPushButton {{
-        color: {theme.INK}; background: transparent; border: none; padding: 1px 0;
+        background: transparent; border: none; padding: 1px 0;
         text-align: left; text-decoration: underline;
     }}
-    QPushButton:focus {{ background: {theme.PAPER}; }}
+    QPushButton:focus {{ border: 1px dotted {theme.QUIET_INK}; }}
     QLabel {{
         color: {theme.INK}; background: {theme.PAPER}; border: 1px solid {theme.QUIET_INK};
         border-radius: 6px; padding: 6px 8px;
@@ -34,7 +34,7 @@ class FileNotes(QWidget):
         super().__init__(parent)
         self.notes: tuple[str, ...] = ()
         self.setAttribute(Qt.WidgetAttribute.WA_NoSystemBackground)
-        self.setStyleSheet(_STYLE)
+        self.set_dark(False)
         self.button = QPushButton()
         self.button.setCursor(Qt.CursorShape.PointingHandCursor)
         self.button.setToolTip("What was changed or left out when the file was read")
@@ -50,6 +50,11 @@ class FileNotes(QWidget):
         column.addWidget(self.button, 0, Qt.AlignmentFlag.AlignLeft)
         column.addWidget(self.label)
         self.hide()
+
+    def set_dark(self, dark: bool) -> None:
+        """Write for a dark background, or for a light one."""
+        ink, _ = theme.inks(dark)
+        self.setStyleSheet(f"{_STYLE} QPushButton {{ color: {ink.name()}; }}")
 
     @property
     def is_open(self) -> bool:

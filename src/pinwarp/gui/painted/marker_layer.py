@@ -13,11 +13,12 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 from qtpy.QtCore import QPointF, QRectF, Qt, QTimer
-from qtpy.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen
+from qtpy.QtGui import QColor, QPainter, QPaintEvent
 from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.landmarks import Position, Side
 from pinwarp.gui.painted.arrows import paint_arrow
+from pinwarp.gui.painted.captions import paint_caption, paint_hint
 from pinwarp.gui.painted.legend import PaintedLegend
 from pinwarp.gui.painted.markers import (
     FAINT,
@@ -102,6 +103,7 @@ class MarkerLayer(QWidget):
             ToolWords: self._paint_tool_words,
         }
         self.painted_for: object = None
+        self._dark = False
         # For a picture: signs in so many pixels, places seen from its middle.
         self.pixels_per_pixel = 1.0
         self.offset = (0.0, 0.0)
@@ -210,40 +212,28 @@ class MarkerLayer(QWidget):
         self.semilandmarks.is_resting = True
         self.update()
 
+    def set_dark(self, dark: bool) -> None:
+        """Write for a dark background, or for a light one."""
+        if dark != self._dark:
+            self._dark = dark
+            self.update()
+
     @property
     def is_bone_lost(self) -> bool:
         """Whether there is a bone but nothing of it in the view."""
         return self._scene.of(Caption) is not None and self._projection.is_bone_lost
 
     def _paint_caption(self, painter: QPainter, caption: Caption) -> None:
-        font = QFont(self.font())
-        font.setWeight(QFont.Weight.DemiBold)
-        painter.setFont(font)
-        painter.setPen(QColor(theme.INK))
-        margin = 12
-        line = painter.fontMetrics().height()
-        painter.drawText(QPointF(margin, margin + line * 0.8), caption.title)
-        painter.setFont(self.font())
-        painter.setPen(QColor(theme.QUIET_INK))
-        file = painter.fontMetrics().elidedText(
-            caption.file, Qt.TextElideMode.ElideMiddle, self.width() - 2 * margin
-        )
-        painter.drawText(QPointF(margin, margin + line * 1.9), file)
+        paint_caption(painter, caption, self.width(), dark=self._dark)
 
     def _paint_scale_bar(self, painter: QPainter, bar: ScaleBar) -> None:
         length = self._projection.unit_per_pixel
         if not 0 < length < math.inf:
             return
-        paint_scale_bar(painter, QRectF(self.rect()), length, bar.unit)
+        paint_scale_bar(painter, QRectF(self.rect()), length, bar.unit, dark=self._dark)
 
     def _paint_hint(self, painter: QPainter, hint: Hint) -> None:
-        plate = QRectF(0, 0, min(340, self.width() - 24), 120)
-        plate.moveCenter(QPointF(self.width() / 2, self.height() / 2))
-        painter.setPen(QPen(QColor(theme.QUIET_INK), 1.5, Qt.PenStyle.DashLine))
-        painter.setBrush(QColor(255, 255, 255, 120))
-        painter.drawRoundedRect(plate, 10, 10)
-        painter.setPen(QColor(theme.INK))
-        painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, hint.words)
+        paint_hint(painter, hint, QRectF(self.rect()), dark=self._dark)
 
     def _paint_dots(self, painter: QPainter, dots: Dots) -> None:
         self.semilandmarks.paint_dots(painter, dots, self._ratio)

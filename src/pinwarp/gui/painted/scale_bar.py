@@ -24,8 +24,20 @@ def length_text(length: float, unit: str) -> str:
     return f"{length:.12g} {unit}".rstrip()
 
 
-def paint_scale_bar(painter: QPainter, view: QRectF, unit_per_pixel: float, unit: str) -> QRectF:
-    """Paint the bar into the lower right corner of a view and return where it is."""
+def paint_scale_bar(
+    painter: QPainter, view: QRectF, unit_per_pixel: float, unit: str, *, dark: bool = False
+) -> QRectF:
+    """Paint the bar into the lower right corner of a view and return where it is.
+
+    Parameters
+    ----------
+    painter, view
+        Where.
+    unit_per_pixel, unit
+        The length of a pixel, and its unit.
+    dark
+        Whether the background is.
+    """
     length = round_length(LONGEST * unit_per_pixel)
     if not length:
         return QRectF()
@@ -37,13 +49,15 @@ def paint_scale_bar(painter: QPainter, view: QRectF, unit_per_pixel: float, unit
     width = max(pixels, metrics.horizontalAdvance(text)) + 2
     words = QRectF(end.x() - width, end.y() - 7 - metrics.height(), width, metrics.height())
     ticks = [QLineF(p, p - QPointF(0, 5)) for p in (start, end)]
-    # A light edge keeps it readable on a bone that reaches into the corner.
-    for colour, thickness in ((QColor(255, 255, 255, 190), 4.5), (QColor(theme.INK), 1.6)):
+    ink, _ = theme.inks(dark)
+    edge = QColor(0, 0, 0, 190) if dark else QColor(255, 255, 255, 190)
+    # An edge keeps it readable on a bone that reaches into the corner.
+    for colour, thickness in ((edge, 4.5), (ink, 1.6)):
         painter.setPen(QPen(colour, thickness, Qt.PenStyle.SolidLine, Qt.PenCapStyle.SquareCap))
         painter.drawLines([QLineF(start, end), *ticks])
-    painter.setPen(QColor(255, 255, 255, 190))
+    painter.setPen(edge)
     for shift in ((-1, 0), (1, 0), (0, -1), (0, 1)):
         painter.drawText(words.translated(*shift), Qt.AlignmentFlag.AlignCenter, text)
-    painter.setPen(QColor(theme.INK))
+    painter.setPen(ink)
     painter.drawText(words, Qt.AlignmentFlag.AlignCenter, text)
     return QRectF(start, end).united(words)

@@ -68,6 +68,16 @@ DIVERGING_COLOURS = (
 SPACE = 8
 
 
+def backgrounds(dark: bool) -> tuple[str, str]:
+    """Return the colours behind bones at the bottom and at the top."""
+    return ("#1b1e23", "#30353d") if dark else (BACKGROUND_BOTTOM, BACKGROUND_TOP)
+
+
+def inks(dark: bool) -> tuple[QColor, QColor]:
+    """Return the colours of words before such a background, and of those in the second place."""
+    return (QColor("#eef0f3"), QColor("#b8bfc9")) if dark else (QColor(INK), QColor(QUIET_INK))
+
+
 def group_colour(row: int) -> QColor:
     """Return the colour of a curve or patch by its place in the list of groups."""
     return QColor(GROUP_COLOURS[row % len(GROUP_COLOURS)])

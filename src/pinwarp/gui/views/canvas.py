@@ -76,8 +76,15 @@ class Canvas(SightedView):
         self.file_notes = FileNotes(self)
         self._full_frame_seconds = 0.0
         self._orbiting = False
-        self.set_background(theme.BACKGROUND_BOTTOM, top=theme.BACKGROUND_TOP)
+        self.set_dark(False)
         self.setMinimumSize(160, 160)
+
+    def set_dark(self, dark: bool) -> None:
+        """Put the bones before a dark background, or before a light one."""
+        bottom, top = theme.backgrounds(dark)
+        self.set_background(bottom, top=top)
+        self.layer.set_dark(dark)
+        self.file_notes.set_dark(dark)
 
     def update(self) -> None:
         """Schedule a paint of the bones, and where it is needed of the sheet above them."""

@@ -1,4 +1,4 @@
-"""What the View menu does: cameras and looks. Nothing here changes the session."""
+"""What the View menu does with the cameras. Nothing here changes the session."""
 
 from __future__ import annotations
 
@@ -6,13 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 import numpy as np
-from qtpy.QtCore import QObject, Qt
-from qtpy.QtGui import QAction
-from qtpy.QtWidgets import QSlider
+from qtpy.QtCore import QObject
 
 from pinwarp.core.alignment import Similarity
 from pinwarp.core.landmarks import Landmark, Side
-from pinwarp.gui.capability.action import Action, one_of, tool
+from pinwarp.gui.capability.action import Action, one_of
 from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.scene.camera_pose import (
     Matrix,
@@ -48,14 +46,12 @@ _SIDES = {
     StandardView.TOP: ("&Top View", 31),
     StandardView.BOTTOM: ("Botto&m View", 32),
 }
-# Smallest and largest landmark, in logical pixels.
-MARKER_RADII = (4.0, 12.0)
 # Share of the bone's diagonal that the height of a view shows after a focus.
 CLOSE_UP = 0.4
 
 
 class ViewControls(Capability):
-    """The View menu: cameras and looks.
+    """The View menu's cameras.
 
     Parameters
     ----------
@@ -86,7 +82,6 @@ class ViewControls(Capability):
         self._fit: Similarity | None = None
         self._expected: Callable[[], Similarity | None] = lambda: None
         self._expected_fit: Similarity | None = None
-        self.section_slider = _section_slider()
         self._surfaces = self._surfaces_now()
         self._pairs = 0
         self.link = CameraLink(views, self.pairing_fit)
@@ -102,9 +97,7 @@ class ViewControls(Capability):
             self._link_next,
             *one_of(map(self._link_action, LinkMode), parent),
             *self._of_cameras(),
-            *self._of_looks(),
         )
-        self.section_slider.valueChanged.connect(self._on_section_moved)
         editor.view_changed.connect(self._on_view)
         scenes.shown.connect(self._on_shown)
         self._on_view()
@@ -160,56 +153,6 @@ class ViewControls(Capability):
             ),
         )
 
-    def _of_looks(self) -> tuple[QAction, ...]:
-        editor = self._editor
-        return (
-            Action(
-                "arrows",
-                "Residual &Arrows",
-                switches=lambda on: editor.look(arrows=on),
-                checked=lambda: editor.view.arrows,
-                at="View.12",
-                keys="A",
-                tip="From warped landmarks to destinations",
-            ),
-            Action(
-                "section",
-                "&Cross-Section",
-                switches=self._on_section,
-                checked=lambda: editor.view.section is not None,
-                at="View.31 tools.45",
-                keys="X",
-                icon="section",
-                tip="Cut both bones open",
-            ),
-            tool(self.section_slider, "tools.46"),
-            Action(
-                "wireframe",
-                "W&ireframe Bones",
-                switches=lambda on: editor.look(wireframe=on),
-                checked=lambda: editor.view.wireframe,
-                at="View.32",
-                keys="Shift+W",
-                tip="Draw edges only",
-            ),
-            Action(
-                "markers_larger",
-                "La&rger Landmarks",
-                lambda: self._resize_markers(1),
-                at="View.41",
-                keys="]",
-                possible=lambda: editor.view.marker_radius < MARKER_RADII[1],
-            ),
-            Action(
-                "markers_smaller",
-                "S&maller Landmarks",
-                lambda: self._resize_markers(-1),
-                at="View.42",
-                keys="[",
-                possible=lambda: editor.view.marker_radius > MARKER_RADII[0],
-            ),
-        )
-
     def shut_down(self) -> None:
         """Let go of the cameras and the editor."""
         self.link.unlink()
@@ -224,9 +167,6 @@ class ViewControls(Capability):
         self._link_next.setToolTip(
             f"Cameras are {view.link.value} ({self._link_next.keys} changes it)"
         )
-        self.section_slider.setEnabled(view.section is not None)
-        if view.section is not None:
-            self.section_slider.setValue(round(view.section * self.section_slider.maximum()))
 
     def _on_shown(self) -> None:
         surfaces, pairs = self._surfaces_now(), len(self._editor.session.pairs)
@@ -266,20 +206,6 @@ class ViewControls(Capability):
             if not _same(fit, self._fit):
                 self._fit = fit
         return self._fit
-
-    # Looks
-
-    def _resize_markers(self, by: float) -> None:
-        radius = self._editor.view.marker_radius + by
-        self._editor.look(marker_radius=float(np.clip(radius, *MARKER_RADII)))
-
-    def _on_section(self, on: bool) -> None:
-        slider = self.section_slider
-        self._editor.look(section=slider.value() / slider.maximum() if on else None)
-
-    def _on_section_moved(self, value: int) -> None:
-        if self._editor.view.section is not None:
-            self._editor.look(section=value / self.section_slider.maximum())
 
     # Cameras
 
@@ -387,16 +313,6 @@ class ViewControls(Capability):
             there = fit if side is Side.SOURCE else inverse(fit)
             targets[side.other] = there.apply(known)
         return targets
-
-
-def _section_slider() -> QSlider:
-    slider = QSlider(Qt.Orientation.Horizontal)
-    slider.setRange(0, 200)
-    slider.setValue(100)
-    slider.setFixedWidth(110)
-    slider.setAccessibleName("Depth of the cross-section")
-    slider.setToolTip("Depth of the cross-section")
-    return slider
 
 
 def _same(a: Similarity | None, b: Similarity | None) -> bool:

@@ -19,6 +19,7 @@ INNER = {
     "components": ("&Apply", "Warp.31"),
     "maps": ("Ma&ps", "View.13"),
     "grid": ("&Grid", "View.14"),
+    "background": ("&Background", "View.33"),
     "sides": ("&Look From", "View.23"),
     "cameras": ("Ca&meras", "View.24"),
 }

@@ -37,6 +37,7 @@ from pinwarp.gui.suggesting.presenter import Suggesting
 from pinwarp.gui.table.presenter import TablePresenter
 from pinwarp.gui.tasks.file_tasks import FileTasks
 from pinwarp.gui.views.controls import ViewControls
+from pinwarp.gui.views.looks import Looks
 from pinwarp.gui.warp.grid import GridPresenter
 from pinwarp.gui.warp.presenter import WarpPresenter
 from pinwarp.gui.warp.quality import QualityPresenter
@@ -86,6 +87,7 @@ class Parts:
         self.quality = QualityPresenter(self.warps)
         self.shown_session = ShownSession(editor, scenes, self.warps, self.quality)
         self.views = ViewControls(editor, views, scenes, say, frame)
+        self.looks = Looks(editor, views, frame)
         self.ghosts = Ghosts(editor, self.warps, surfaces)
         self.hand = Hand(editor, views, self.ghosts, self.views)
         self.bones = BoneEdits(editor, say)
