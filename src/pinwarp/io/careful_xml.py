@@ -30,6 +30,7 @@ def parse_xml(
     text: Callable[[str], object] | None = None,
     *,
     most: int | None = None,
+    parser: expat.XMLParserType | None = None,
 ) -> None:
     """Walk through XML.
 
@@ -43,6 +44,11 @@ def parse_xml(
     begin, end, text
         Called with the tag, attributes and line of an element, with the tag of one that ends, and
         with what stands in between.
+    most
+        Refuse more elements than this, and without it than :data:`MOST`.
+    parser
+        One of the caller's, which it can ask for more: where in the text something is, in bytes
+        of UTF-8 behind the blanks.
 
     Raises
     ------
@@ -59,7 +65,7 @@ def parse_xml(
     # XML itself allows nothing before its declaration.
     content = whole.lstrip("\ufeff \t\r\n")
     lines_before = whole.count("\n", 0, len(whole) - len(content))
-    parser = expat.ParserCreate()
+    parser = parser or expat.ParserCreate()
     parser.buffer_text = True
     parser.buffer_size = _BUFFER
     depth = count = 0

@@ -30,3 +30,14 @@ def sample_session() -> Path:
     'femur_sample.pinwarp.csv'
     """
     return assets_folder() / "femur_sample.pinwarp.csv"
+
+
+def sample_model() -> Path:
+    """Return a small model of OpenSim: a leg with three muscles.
+
+    Examples
+    --------
+    >>> sample_model().name
+    'leg.osim'
+    """
+    return assets_folder() / "leg_model" / "leg.osim"

@@ -1,0 +1,1 @@
+"""Models of OpenSim: read by byte spans, written by splicing."""
