@@ -11,6 +11,9 @@ Landmarks and meshes
     :class:`Landmark`, :class:`Side`, :class:`Role`, :func:`read_landmarks`,
     :func:`write_landmarks`, :class:`Mesh`, :class:`MeshFile`, :func:`read_mesh`,
     :func:`write_mesh`, :func:`compare_surfaces`
+Models of OpenSim
+    :func:`read_model`, :func:`warp_model`, :func:`write_model`, :class:`OsimModel`,
+    :class:`WarpedModel`, :class:`ElementRow`
 The spline
     :func:`solve_coefficients`, :class:`TPSCoefficients3D`, :class:`PenaltyConvention`,
     :class:`Components`, :func:`factorise`, :func:`leave_one_out`, :func:`penalty_curve`
@@ -36,13 +39,19 @@ if TYPE_CHECKING:
     from pinwarp.core.factor import factorise
     from pinwarp.core.landmarks import Landmark, Role, Side
     from pinwarp.core.mesh import Mesh
+    from pinwarp.core.model_rows import ElementRow
     from pinwarp.core.quality import leave_one_out, penalty_curve
     from pinwarp.core.settings import WarpSettings
     from pinwarp.core.surface_distance import compare_surfaces
     from pinwarp.io.landmark_files import read_landmarks, write_landmarks
     from pinwarp.io.meshes import MeshFile, read_mesh, write_mesh
+    from pinwarp.io.osim.model import OsimModel
+    from pinwarp.io.osim.reading import read_model
     from pinwarp.session.judging.check import Check, check
     from pinwarp.session.keeping.files import read_session, write_session
+    from pinwarp.session.model.library import warp_model
+    from pinwarp.session.model.warped import WarpedModel
+    from pinwarp.session.model.writing import write_model
     from pinwarp.session.outputs.exports import warped_mesh, warped_passengers
     from pinwarp.session.session import Session
     from pinwarp.session.warp.refining import RefinementOptions, refined_session
@@ -53,9 +62,11 @@ from pinwarp.version import __version__
 __all__ = [
     "Check",
     "Components",
+    "ElementRow",
     "Landmark",
     "Mesh",
     "MeshFile",
+    "OsimModel",
     "PenaltyConvention",
     "PinwarpError",
     "PinwarpWarning",
@@ -65,6 +76,7 @@ __all__ = [
     "Side",
     "TPSCoefficients3D",
     "WarpSettings",
+    "WarpedModel",
     "__version__",
     "check",
     "compare_surfaces",
@@ -73,13 +85,16 @@ __all__ = [
     "penalty_curve",
     "read_landmarks",
     "read_mesh",
+    "read_model",
     "read_session",
     "refined_session",
     "solve_coefficients",
+    "warp_model",
     "warped_mesh",
     "warped_passengers",
     "write_landmarks",
     "write_mesh",
+    "write_model",
     "write_session",
 ]
 
@@ -89,12 +104,18 @@ _HOMES = {
     "core.factor": ("factorise",),
     "core.landmarks": ("Landmark", "Role", "Side"),
     "core.mesh": ("Mesh",),
+    "core.model_rows": ("ElementRow",),
     "core.quality": ("leave_one_out", "penalty_curve"),
     "core.settings": ("WarpSettings",),
     "core.surface_distance": ("compare_surfaces",),
     "io.landmark_files": ("read_landmarks", "write_landmarks"),
     "io.meshes": ("MeshFile", "read_mesh", "write_mesh"),
+    "io.osim.model": ("OsimModel",),
+    "io.osim.reading": ("read_model",),
     "session.judging.check": ("Check", "check"),
+    "session.model.library": ("warp_model",),
+    "session.model.warped": ("WarpedModel",),
+    "session.model.writing": ("write_model",),
     "session.outputs.exports": ("warped_mesh", "warped_passengers"),
     "session.keeping.files": ("read_session", "write_session"),
     "session.session": ("Session",),

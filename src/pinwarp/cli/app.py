@@ -10,6 +10,7 @@ from typer.core import TyperGroup
 from pinwarp.cli.batch import batch
 from pinwarp.cli.check import check
 from pinwarp.cli.convert import convert
+from pinwarp.cli.model import model
 from pinwarp.cli.open import OpenWindow, make_open
 from pinwarp.cli.options import Version
 from pinwarp.cli.refine import refine
@@ -67,6 +68,6 @@ def make_app(open_window: OpenWindow) -> typer.Typer:
         del version  # told before anything else
 
     app.command(OPEN)(make_open(open_window))
-    for command in (warp, check, suggest, refine, convert, batch):
+    for command in (warp, check, suggest, refine, convert, batch, model):
         app.command()(command)
     return app

@@ -78,8 +78,8 @@ class WarpedBody:
         New functions by the key of the old one.
     meshes
         New meshes by key, in the frame that they stand in, to be drawn without factors.
-    frames
-        Where every frame is now in the body, by path.
+    frames, places
+        Where every frame and every (3,) point is now in the body, by path.
     """
 
     parts: BodyParts
@@ -88,6 +88,7 @@ class WarpedBody:
     functions: dict[int, FunctionChange]
     meshes: dict[int, Mesh]
     frames: dict[str, Placement]
+    places: dict[str, Matrix]
 
 
 def warp_body(
@@ -140,6 +141,7 @@ def warp_body(
         carrier.functions,
         carrier.meshes,
         {path: carrier.frames.after(path) for path in parts.frames},
+        {point.path: carrier.frames.new_place(point) for point in parts.points},
     )
 
 

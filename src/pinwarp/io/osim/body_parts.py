@@ -30,6 +30,7 @@ POINT_KINDS = {
     "Marker": "marker",
     "Station": "station",
 }
+_WRAPS = frozenset(shape.value for shape in WrapShape)
 _OF_PATHS = ("PathPoint", "ConditionalPathPoint")
 _STATIONS = ("socket_point_a", "socket_point_b", "socket_point_c", "socket_origin_point")
 
@@ -72,10 +73,10 @@ class _Gatherer:
 
     def __init__(self, model: OsimModel, body: str) -> None:
         self._model, self._body = model, body
-        self._elements = list(model.elements.values())
+        self._elements = model.objects
         self._wraps = {}
         for element in self._elements:
-            if element.tag in set(WrapShape) and self._is_on(model.owner_of(element)):
+            if element.tag in _WRAPS and self._is_on(model.owner_of(element)):
                 self._wraps[element.name] = model.path_of(element)
 
     def gathered(self, meshes: Sequence[MeshPart]) -> BodyParts:
@@ -184,7 +185,7 @@ class _Gatherer:
     def _wrap_parts(self) -> Iterator[WrapPart]:
         model = self._model
         for element in self._elements:
-            if element.tag not in set(WrapShape) or not self._is_on(model.owner_of(element)):
+            if element.tag not in _WRAPS or not self._is_on(model.owner_of(element)):
                 continue
             shape = WrapShape(element.tag)
             match shape:

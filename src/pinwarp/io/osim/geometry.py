@@ -47,7 +47,7 @@ def mesh_elements(model: OsimModel, body: str) -> tuple[Element, ...]:
     """
     return tuple(
         element
-        for element in model.elements.values()
+        for element in model.objects
         if element.tag == "Mesh"
         and model.text(element, "mesh_file")
         and model.body_of(mesh_frame(model, element)) == body

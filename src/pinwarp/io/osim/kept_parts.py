@@ -41,7 +41,7 @@ def kept_parts(model: OsimModel, body: str) -> Iterator[KeptPart]:
     mass = f"{model.numbers(element, 'mass', 0.0)[0]:g}"
     about = (element.number, body, "mass and inertia", element.line)
     yield KeptPart(*about, words=f"mass {mass} kg and inertia are the generic body's")
-    for each in model.elements.values():
+    for each in model.objects:
         for kind, words, flag in _of(model, body, each):
             yield KeptPart(each.number, model.path_of(each), kind, each.line, words, flag)
 
@@ -49,7 +49,7 @@ def kept_parts(model: OsimModel, body: str) -> Iterator[KeptPart]:
 def _of(model: OsimModel, body: str, element: Element) -> Iterator[tuple[str, str, str]]:
     """Yield kind, words and flag where an element is to be named."""
     tag = element.tag
-    if tag in _KNOWN or tag.endswith("Joint") or not tag[:1].isupper():
+    if tag in _KNOWN or tag.endswith("Joint"):
         return
     kind = _in_words(tag)
     if tag == "FunctionBasedPath":

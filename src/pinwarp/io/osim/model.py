@@ -71,6 +71,16 @@ class OsimModel:
         return tuple(path for path, e in self.components.items() if e.tag == "Body")
 
     @cached_property
+    def objects(self) -> tuple[Element, ...]:
+        """Its elements that are objects and not properties, in the order of the file."""
+        return tuple(e for e in self.elements.values() if e.tag[:1].isupper())
+
+    @cached_property
+    def _bodies_of(self) -> dict[str, str]:
+        """The bodies of the frames that were asked for."""
+        return {}
+
+    @cached_property
     def components(self) -> dict[str, Element]:
         """Its named elements by path as OpenSim writes it; of two with one path, the first."""
         found: dict[str, Element] = {}
@@ -187,13 +197,14 @@ class OsimModel:
         FileFormatError
             When frames stand on each other in a circle, or too deep in one another.
         """
+        if frame in self._bodies_of:
+            return self._bodies_of[frame]
         at = frame
         for _ in range(_DEEPEST):
-            if at == GROUND:
-                return GROUND
-            element = self.components[at]
-            if element.tag in BASES:
+            if at == GROUND or self.components[at].tag in BASES:
+                self._bodies_of[frame] = at
                 return at
+            element = self.components[at]
             if element.tag == STATION_FRAME:
                 station = self.connected(element, "socket_origin_point")
                 at = self.frame_of(station, "socket_parent_frame")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError
@@ -38,18 +39,29 @@ def read_model(path: str | Path) -> OsimModel:
     40500
     """
     content = read_content(path, what="model", largest=LARGEST)
-    root = read_elements(content.path, content.data)
+    return model_of(content.path, content.data)
+
+
+def model_of(path: Path, data: bytes) -> OsimModel:
+    """Return the model that the bytes of a file hold, as :func:`read_model`.
+
+    Raises
+    ------
+    FileFormatError
+        As there.
+    """
+    root = read_elements(path, data)
     found = root.child("Model")
     if root.tag != "OpenSimDocument" or found is None:
         raise FileFormatError(
-            content.path, "This is no model of OpenSim. Choose a model's .osim file.", root.line
+            path, "This is no model of OpenSim. Choose a model's .osim file.", root.line
         )
-    version = _version(content.path, root)
+    version = _version(path, root)
     skipped = {
         e.number for child in found.children if child.tag == "defaults" for e in child.walk()
     }
     elements = {e.number: e for e in found.walk() if e.number not in skipped}
-    model = OsimModel(content.path, content.data, content.sha256, version, found, elements)
+    model = OsimModel(path, data, hashlib.sha256(data).hexdigest(), version, found, elements)
     for element in elements.values():
         for child in element.children:
             if is_frame_socket(child.tag) and child.text.strip():

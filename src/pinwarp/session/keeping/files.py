@@ -11,6 +11,7 @@ from pinwarp.core.landmarks import Side
 from pinwarp.io import session_file
 from pinwarp.io.mesh_search import find_mesh
 from pinwarp.io.meshes import MeshFile, read_mesh
+from pinwarp.io.osim.bone import read_bone, split_bone_path
 from pinwarp.io.session_file import MeshReference
 from pinwarp.session.session import Session, as_seen, from_record, to_record
 from pinwarp.session.warp.rested import with_rest
@@ -119,17 +120,23 @@ def with_meshes(
         reference = session.mesh_file(side)
         if not isinstance(reference, MeshReference):
             continue
-        if not os.path.isfile(reference.path) and folder is not None:
+        if not _is_there(reference.path) and folder is not None:
             found = find_mesh(reference, [folder])
             if found is not None and found.is_same:
                 reference = replace(reference, path=found.path)
-        if os.path.isfile(reference.path):
+        if _is_there(reference.path):
             session = session.with_mesh(side, _read(reference))
     return session
 
 
+def _is_there(path: Path) -> bool:
+    named = split_bone_path(path)
+    return os.path.isfile(path if named is None else named[0])
+
+
 def _read(reference: MeshReference) -> MeshFile:
-    file = read_mesh(reference.path)
+    is_bone = split_bone_path(reference.path) is not None
+    file = read_bone(reference.path) if is_bone else read_mesh(reference.path)
     if file.sha256 != reference.sha256:
         file = replace(file, notes=(*file.notes, CHANGED))
     return as_seen(file, reference)

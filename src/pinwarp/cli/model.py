@@ -1,0 +1,166 @@
+"""``pinwarp model``: a generic model of OpenSim made a subject's."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from pinwarp.cli.options import Force
+from pinwarp.cli.telling import refuse_existing, tell_notes
+from pinwarp.core.errors import PinwarpError
+from pinwarp.core.model_rows import Outcome
+from pinwarp.core.words import counted, some_of
+from pinwarp.io.model_report import report_json, report_text
+from pinwarp.io.osim.reading import read_model
+from pinwarp.session.model.overview import overview
+from pinwarp.session.model.study import ModelStudy, read_study, study_of
+from pinwarp.session.model.warped import WarpedModel, warped_model
+from pinwarp.session.model.writing import SUFFIX, outputs_of, write_model
+from pinwarp.version import __version__
+
+FLAGGED = 1
+
+
+def model(
+    model: Annotated[
+        Path,
+        typer.Argument(
+            metavar="MODEL",
+            help="A model (.osim), or a study of one (.pinwarp-model.csv) that names it, the "
+            "sessions of its bodies, and what is kept or turned.",
+        ),
+    ],
+    body: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=SESSION",
+            help="A body and the session that warps it; as often as there are bodies.",
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", metavar="NEW.osim", help="The new model."),
+    ] = None,
+    turn: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FRAME",
+            help="The path of a frame that turns with the bone; as often as wanted. Others keep "
+            "their orientation.",
+        ),
+    ] = None,
+    turn_all: Annotated[
+        bool, typer.Option("--turn-all", help="All frames of the given bodies turn.")
+    ] = False,
+    keep: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="PATH", help="The path of an element that is left as it is; as often as wanted."
+        ),
+    ] = None,
+    geometry: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="DIR", help="A folder with meshes, beside the model's own Geometry folder."
+        ),
+    ] = None,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Say what would become of everything; write nothing.")
+    ] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print every element for a program.")
+    ] = False,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Exit with 1 where an element is flagged.")
+    ] = False,
+    force: Force = False,
+) -> None:
+    """Warp the bones of a model to a subject's, with all that stands on them.
+
+    Without a body it lists what is on each. The new model's meshes go into NEW_Geometry beside
+    it, and NEW_report.csv says of every element whether it was warped, kept or flagged.
+    """
+    is_model = model.suffix.lower() == SUFFIX
+    if is_model and not body:
+        _list(model, geometry or [], as_json)
+        return
+    if out is None and not dry_run:
+        raise PinwarpError("Name the new model: -o NEW.osim, or look first with --dry-run.")
+    if is_model:
+        sessions = [_split(each) for each in body or []]
+        study = study_of(
+            read_model(model),
+            sessions,
+            turn=turn or (),
+            keep=keep or (),
+            turns=turn_all,
+            folders=geometry or (),
+        )
+    else:
+        if body or turn or keep or turn_all:
+            raise PinwarpError(
+                "A study says itself which bodies are warped and what is kept or turned: change "
+                "it there."
+            )
+        study = read_study(model, folders=geometry or ())
+    warped = warped_model(study)
+    if out is not None and not dry_run:
+        outputs = outputs_of(warped, out)
+        refuse_existing(outputs, force)
+        write_model(warped, out, force=True)
+    if as_json:
+        told = report_json(warped.rows, _about(warped, None if dry_run else out))
+        typer.echo(json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False))
+    else:
+        typer.echo(report_text(warped.rows, warped.notes))
+        if out is not None and not dry_run:
+            meshes = counted(len(warped.meshes), "mesh", "meshes")
+            typer.echo(f"{out}: {meshes} beside it, {outputs[1].name} says all of it")
+    if strict and warped.counts[Outcome.FLAGGED]:
+        raise typer.Exit(FLAGGED)
+
+
+def _split(words: str) -> tuple[str, Path]:
+    name, separator, session = words.partition("=")
+    if not (name and separator and session):
+        raise PinwarpError(f"--body {words}: name a body and its session, as in thigh=thigh.csv.")
+    return name, Path(session)
+
+
+def _list(path: Path, folders: list[Path], as_json: bool) -> None:
+    opened = read_model(path)
+    bodies = overview(opened, folders)
+    if as_json:
+        about = {"pinwarp": __version__, "model": str(opened.path), "version": opened.version}
+        told = {**about, "bodies": [each.as_json() for each in bodies]}
+        typer.echo(json.dumps(told, indent=2, ensure_ascii=False))
+        return
+    typer.echo(f"{opened.name}: {counted(len(bodies), 'body', 'bodies')}, version {opened.version}")
+    for each in bodies:
+        missing = f" ({len(each.missing)} not found)" if each.missing else ""
+        typer.echo(f"{each.name}: {some_of(each.meshes) or 'no mesh'}{missing}")
+        if each.counts:
+            typer.echo(f"  is warped: {each.in_words}")
+        if each.kept:
+            kept = [f"{name} ({kind}: {words})" for kind, name, words in each.kept]
+            typer.echo(f"  cannot be: {some_of(kept)}")
+    if any(each.missing for each in bodies):
+        tell_notes(["Meshes that are missing are needed only of bodies that are warped."])
+
+
+def _about(warped: WarpedModel, out: Path | None) -> dict[str, Any]:
+    study: ModelStudy = warped.study
+    return {
+        "pinwarp": __version__,
+        "model": str(study.model.path),
+        "sha256": study.model.sha256,
+        "written": None if out is None else str(out),
+        "bodies": [
+            {"body": body.parts.name, "pairs": warp.pairs, "size_ratio": warp.ratio}
+            for body, warp in zip(warped.bodies, warped.warps, strict=True)
+        ],
+        "notes": list(warped.notes),
+    }

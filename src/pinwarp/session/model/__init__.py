@@ -1,0 +1,1 @@
+"""A model of OpenSim as a study: bodies, their sessions, and the model that comes of them."""
