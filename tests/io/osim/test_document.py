@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pinwarp.core.errors import FileFormatError
-from pinwarp.io.osim.document import read_elements
+from pinwarp.io.osim.document import read_document
 from pinwarp.io.osim.splicing import Splicer
 from tests.osim_models import NAMES, model_file
 
@@ -51,25 +51,27 @@ def as_found(element):
 
 @given(documents())
 def test_elements_are_those_of_another_parser_and_know_their_bytes(data):
-    root = read_elements(PLACE, data)
+    document = read_document(PLACE, data)
+    root, text = document.root, document.text
     assert as_found(root) == as_tree(ET.fromstring(data.decode("utf-8-sig").encode()))
     for element in root.walk():
-        whole = data[element.begin : element.end].decode()
-        assert as_found(read_elements(PLACE, whole.encode())) == as_found(element)
-        inner = data[element.inner : element.close]
-        assert element.is_closed or data[element.close :].startswith(b"</")
-        assert b"/>" in data[element.inner - 2 : element.inner] or not element.is_closed
-        assert whole.encode().find(inner) >= 0
-    assert Splicer(data).spliced() == data
+        whole = text[element.begin : element.end]
+        assert as_found(read_document(PLACE, whole).root) == as_found(element)
+        inner = text[element.inner : element.close]
+        assert element.is_closed or text[element.close :].startswith(b"</")
+        assert b"/>" in text[element.inner - 2 : element.inner] or not element.is_closed
+        assert inner in whole
+    assert Splicer(document).spliced() == data
 
 
 @given(documents(), st.data())
 def test_an_edited_property_reads_back_and_everything_else_stays(data, draw):
-    root = read_elements(PLACE, data)
+    document = read_document(PLACE, data)
+    root = document.root
     chosen = draw.draw(st.sampled_from(list(root.walk())))
-    splicer = Splicer(data)
+    splicer = Splicer(document)
     splicer.set_text(chosen, "a", "R & D < 3")
-    again = read_elements(PLACE, splicer.spliced())
+    again = read_document(PLACE, splicer.spliced()).root
     number = [e.number for e in root.walk()].index(chosen.number)
     edited = list(again.walk())[number]
     assert edited.child("a").text == "R & D < 3"
@@ -85,15 +87,14 @@ def test_an_edited_property_reads_back_and_everything_else_stays(data, draw):
 @pytest.mark.parametrize("name", NAMES)
 def test_a_model_that_is_not_edited_is_written_to_the_byte(name):
     data = model_file(name).read_bytes()
-    read_elements(PLACE, data)
-    assert Splicer(data).spliced() == data
+    assert Splicer(read_document(PLACE, data)).spliced() == data
 
 
 def test_line_ends_tabs_and_comments_stay_around_what_is_put_in():
     data = b"<Model>\r\n\t<Point name='p'>\r\n\t\t<!-- where -->\r\n\t</Point>\r\n</Model>"
-    root = read_elements(PLACE, data)
-    splicer = Splicer(data)
-    splicer.set_numbers(root.children[0], "location", [1, 0.5, -0.0])
+    document = read_document(PLACE, data)
+    splicer = Splicer(document)
+    splicer.set_numbers(document.root.children[0], "location", [1, 0.5, -0.0])
     assert splicer.spliced() == data.replace(
         b"'p'>", b"'p'>\r\n\t\t<location>1.0 0.5 0.0</location>"
     )
@@ -117,20 +118,42 @@ def test_line_ends_tabs_and_comments_stay_around_what_is_put_in():
 )
 def test_what_cannot_be_edited_safely_is_refused_with_its_line(data, line, words):
     with pytest.raises(FileFormatError, match=words) as found:
-        read_elements(PLACE, data)
+        read_document(PLACE, data)
     assert found.value.line == line
 
 
 def test_more_elements_than_a_model_has_are_refused(monkeypatch):
     monkeypatch.setattr("pinwarp.io.osim.document.MOST_ELEMENTS", 10)
     with pytest.raises(FileFormatError, match="more than 10 elements"):
-        read_elements(PLACE, b"<a>" + 11 * b"<b/>" + b"</a>")
+        read_document(PLACE, b"<a>" + 11 * b"<b/>" + b"</a>")
 
 
-def test_an_old_encoding_that_holds_ascii_as_it_is_is_kept():
-    data = "<?xml version='1.0' encoding='ISO-8859-1'?><a name='ü'><b>1</b></a>".encode("latin-1")
-    root = read_elements(PLACE, data)
-    assert root.name == "ü"
-    splicer = Splicer(data)
-    splicer.set_text(root, "b", "ä")
-    assert read_elements(PLACE, splicer.spliced()).child("b").text == "ä"
+@pytest.mark.parametrize("encoding", ["ISO-8859-1", "windows-1252", "us-ascii", "UTF-8"])
+def test_an_encoding_that_holds_ascii_as_it_is_is_kept(encoding):
+    word = "u" if encoding == "us-ascii" else "üß"
+    text = f"<?xml version='1.0' encoding='{encoding}'?><a name='{word}'><b>{word}</b><c>2</c></a>"
+    data = text.encode(encoding)
+    document = read_document(PLACE, data)
+    assert (document.root.name, document.root.child("b").text) == (word, word)
+    splicer = Splicer(document)
+    assert splicer.spliced() == data
+    splicer.set_text(document.root, "c", "ä")
+    assert splicer.spliced() == text.replace("<c>2", "<c>&#228;").encode(encoding)
+
+
+def test_blanks_before_the_document_stay_and_count_as_lines():
+    data = b"\xef\xbb\xbf\n\n <a>\n<b>1</b></a>"
+    document = read_document(PLACE, data)
+    assert document.root.child("b").line == 4
+    splicer = Splicer(document)
+    splicer.set_numbers(document.root, "b", 2)
+    assert splicer.spliced() == data.replace(b"1", b"2.0")
+    with pytest.raises(FileFormatError) as found:
+        read_document(PLACE, b"\n\n<a>\n<b></a>")
+    assert found.value.line == 4
+
+
+def test_bytes_that_are_not_of_the_encoding_are_told_with_their_line():
+    with pytest.raises(FileFormatError, match="not in the encoding utf-8") as found:
+        read_document(PLACE, b"<a>\n\xff</a>")
+    assert found.value.line == 2

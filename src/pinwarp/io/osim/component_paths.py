@@ -24,9 +24,9 @@ def paths_below(root: Element, elements: Iterable[Element]) -> dict[int, str]:
     Examples
     --------
     >>> from pathlib import Path
-    >>> from pinwarp.io.osim.document import read_elements
+    >>> from pinwarp.io.osim.document import read_document
     >>> text = b"<Model><BodySet><objects><Body name='hip'/></objects></BodySet></Model>"
-    >>> root = read_elements(Path("a.osim"), text)
+    >>> root = read_document(Path("a.osim"), text).root
     >>> paths_below(root, root.walk())[3]
     '/bodyset/hip'
     """

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import codecs
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from xml.parsers import expat
 
@@ -14,6 +16,9 @@ from pinwarp.io.csv_cells import as_sentence
 MOST_ELEMENTS = 1_000_000
 _WIDE = (b"\xff\xfe", b"\xfe\xff", b"<\0", b"\0<", b"\0\0")
 _START_TAG = re.compile(rb"""<(?:"[^"]*"|'[^']*'|[^"'>])*>""")
+_HEAD = re.compile(rb"(?:\xef\xbb\xbf)?[ \t\r\n]*")
+_DECLARED = re.compile(rb"""(?:\xef\xbb\xbf)?\s*<\?xml[^>]*?encoding\s*=\s*["']([!-~]+?)["']""")
+_UTF8 = "utf-8"
 _SAVE = "Open the model in OpenSim and save it again."
 
 
@@ -86,7 +91,35 @@ class Element:
             waiting.extend(reversed(element.children))
 
 
-def read_elements(path: Path, data: bytes) -> Element:
+@dataclass(frozen=True, eq=False)
+class Document:
+    """A document whose elements know their bytes.
+
+    Parameters
+    ----------
+    root
+        The element that all others are in.
+    text
+        What the places of elements count in: the document in UTF-8.
+    head
+        The bytes before that in the file: a mark of the encoding, and blanks.
+    encoding
+        Of the file.
+    """
+
+    root: Element
+    text: bytes = field(repr=False)
+    head: bytes
+    encoding: str
+
+    def as_file(self, text: bytes) -> bytes:
+        """Return the bytes of a file with another text in it."""
+        if self.encoding == _UTF8:
+            return self.head + text
+        return self.head + text.decode(_UTF8).encode(self.encoding)
+
+
+def read_document(path: Path, data: bytes) -> Document:
     """Read the elements of a document.
 
     Parameters
@@ -98,8 +131,7 @@ def read_elements(path: Path, data: bytes) -> Element:
 
     Returns
     -------
-    Element
-        The root.
+    Document
 
     Raises
     ------
@@ -109,20 +141,53 @@ def read_elements(path: Path, data: bytes) -> Element:
 
     Examples
     --------
-    >>> root = read_elements(Path("a.osim"), b"<a><b name='x'> 1 2 </b><c/></a>")
-    >>> [(e.tag, e.name, e.text, e.begin, e.end) for e in root.children]
+    >>> document = read_document(Path("a.osim"), b"<a><b name='x'> 1 2 </b><c/></a>")
+    >>> [(e.tag, e.name, e.text, e.begin, e.end) for e in document.root.children]
     [('b', 'x', ' 1 2 ', 3, 24), ('c', '', '', 24, 28)]
     """
     if data.startswith(_WIDE):
         raise FileFormatError(path, "It is saved as UTF-16 or UTF-32. Save it as UTF-8.")
-    parser = expat.ParserCreate()
-    reader = _Reader(data, parser)
+    encoding = _encoding_of(path, data)
+    head = _HEAD.match(data)
+    start = head.end() if head else 0
     try:
-        parse_xml(data, reader.begin, reader.leave, reader.hear, parser=parser, most=MOST_ELEMENTS)
+        words = data[start:].decode(encoding)
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, start + error.start) + 1
+        said = f"It is not in the encoding {encoding} that it says it is in."
+        raise FileFormatError(path, f"{said} {_SAVE}", line) from None
+    # Whatever the file's own encoding, expat counts in this one when it is handed text.
+    text = data[start:] if encoding == _UTF8 else words.encode(_UTF8)
+    parser = expat.ParserCreate()
+    reader = _Reader(text, parser)
+    lines = data.count(b"\n", 0, start)
+    try:
+        parse_xml(words, reader.begin, reader.leave, reader.hear, parser=parser, most=MOST_ELEMENTS)
     except XmlError as error:
-        raise FileFormatError(path, f"{as_sentence(str(error))} {_SAVE}", error.line) from None
+        words = f"{as_sentence(str(error))} {_SAVE}"
+        raise FileFormatError(path, words, lines + error.line) from None
     assert reader.root is not None, "what has no element is no XML"
-    return reader.root
+    if lines:
+        for element in reader.root.walk():
+            element.line += lines
+    return Document(reader.root, text, data[:start], encoding)
+
+
+def _encoding_of(path: Path, data: bytes) -> str:
+    """Return the encoding that a document says it is in."""
+    said = _DECLARED.match(data)
+    name = said[1].decode("ascii") if said else _UTF8
+    # What is spliced in is ASCII.
+    ascii_text = "".join(map(chr, range(32, 127)))
+    try:
+        is_plain = ascii_text.encode(name) == ascii_text.encode()
+        encoding = codecs.lookup(name).name
+    except (LookupError, UnicodeError):
+        is_plain = False
+    if not is_plain:
+        words = f"Its encoding {name!r} is none that can be edited. Save it as UTF-8."
+        raise FileFormatError(path, words, 1)
+    return encoding
 
 
 class _Reader:
@@ -134,7 +199,6 @@ class _Reader:
         self._number = 0
         self.root: Element | None = None
         parser.StartDoctypeDeclHandler = self._refuse_type
-        parser.XmlDeclHandler = self._look_at_encoding
 
     def begin(self, tag: str, attributes: Mapping[str, str], line: int) -> None:
         parent = self._open[-1] if self._open else None
@@ -168,13 +232,3 @@ class _Reader:
     def _refuse_type(self, *_declared: object) -> None:
         words = "it declares a document type, which no model needs"
         raise XmlError(words, self._parser.CurrentLineNumber)
-
-    def _look_at_encoding(self, _version: object, encoding: str | None, _alone: object) -> None:
-        # What is spliced in is ASCII.
-        ascii_text = "".join(map(chr, range(32, 127)))
-        try:
-            is_plain = ascii_text.encode(encoding or "utf-8") == ascii_text.encode()
-        except (LookupError, UnicodeError):
-            is_plain = False
-        if not is_plain:
-            raise XmlError(f"its encoding {encoding!r} is none that can be edited", 1)

@@ -24,8 +24,8 @@ def function_in(element: Element, tag: str) -> Element | None:
     Examples
     --------
     >>> from pathlib import Path
-    >>> from pinwarp.io.osim.document import read_elements
-    >>> axis = read_elements(Path("a.osim"), b"<A><Constant name='function'/></A>")
+    >>> from pinwarp.io.osim.document import read_document
+    >>> axis = read_document(Path("a.osim"), b"<A><Constant name='function'/></A>").root
     >>> function_in(axis, "function").tag
     'Constant'
     """

@@ -15,7 +15,7 @@ from pinwarp.core.errors import FileFormatError
 from pinwarp.core.words import some_of
 from pinwarp.io.csv_cells import shortened
 from pinwarp.io.osim.component_paths import canonical, paths_below, segment_of
-from pinwarp.io.osim.document import Element
+from pinwarp.io.osim.document import Document, Element
 
 BASES = ("Body", "Ground")
 OFFSETS = ("PhysicalOffsetFrame", "OffsetFrame")
@@ -39,8 +39,8 @@ class OsimModel:
         Their hash.
     version
         Of the format, such as 40500.
-    element
-        The ``Model``.
+    document, element
+        Its elements with their bytes, and the ``Model`` among them.
     elements
         All elements of the model but its defaults, by their number.
 
@@ -57,6 +57,7 @@ class OsimModel:
     data: bytes = field(repr=False)
     sha256: str
     version: int
+    document: Document = field(repr=False)
     element: Element = field(repr=False)
     elements: dict[int, Element] = field(repr=False)
 

@@ -6,7 +6,7 @@ import hashlib
 from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError
-from pinwarp.io.osim.document import Element, read_elements
+from pinwarp.io.osim.document import Element, read_document
 from pinwarp.io.osim.model import OsimModel, is_frame_socket
 from pinwarp.io.reading import read_content
 
@@ -50,7 +50,8 @@ def model_of(path: Path, data: bytes) -> OsimModel:
     FileFormatError
         As there.
     """
-    root = read_elements(path, data)
+    document = read_document(path, data)
+    root = document.root
     found = root.child("Model")
     if root.tag != "OpenSimDocument" or found is None:
         raise FileFormatError(
@@ -61,7 +62,9 @@ def model_of(path: Path, data: bytes) -> OsimModel:
         e.number for child in found.children if child.tag == "defaults" for e in child.walk()
     }
     elements = {e.number: e for e in found.walk() if e.number not in skipped}
-    model = OsimModel(path, data, hashlib.sha256(data).hexdigest(), version, found, elements)
+    model = OsimModel(
+        path, data, hashlib.sha256(data).hexdigest(), version, document, found, elements
+    )
     for element in elements.values():
         for child in element.children:
             if is_frame_socket(child.tag) and child.text.strip():

@@ -8,7 +8,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pinwarp.io.osim.document import Element
+from pinwarp.io.osim.document import Document, Element
 
 _COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 _INDENT = re.compile(rb"(\r\n|\n|\r)[ \t]*\Z")
@@ -19,16 +19,15 @@ class Splicer:
 
     Parameters
     ----------
-    data
-        The bytes that the elements were read from.
+    document
+        That the elements are of.
 
     Examples
     --------
     >>> from pathlib import Path
-    >>> from pinwarp.io.osim.document import read_elements
-    >>> data = b"<a><!-- kept --><b>1</b><c/></a>"
-    >>> root = read_elements(Path("a.osim"), data)
-    >>> splicer = Splicer(data)
+    >>> from pinwarp.io.osim.document import read_document
+    >>> document = read_document(Path("a.osim"), b"<a><!-- kept --><b>1</b><c/></a>")
+    >>> splicer, root = Splicer(document), document.root
     >>> splicer.set_numbers(root, "b", [0.1, 2])
     >>> splicer.set_text(root, "c", "R & D")
     >>> splicer.set_text(root, "d", "new")
@@ -36,8 +35,8 @@ class Splicer:
     '<a><d>new</d><!-- kept --><b>0.1 2.0</b><c>R &amp; D</c></a>'
     """
 
-    def __init__(self, data: bytes) -> None:
-        self._data = data
+    def __init__(self, document: Document) -> None:
+        self._document, self._data = document, document.text
         self._edits: dict[tuple[int, int], bytes] = {}
         # What is missing in an element is put in where it begins.
         self._added: dict[Element, dict[str, str]] = {}
@@ -69,7 +68,7 @@ class Splicer:
         return line[0] if line else b""
 
     def spliced(self) -> bytes:
-        """Return the document with all edits."""
+        """Return the bytes of the document's file with all edits."""
         edits = dict(self._edits)
         for element, added in self._added.items():
             place, new = self._addition(element, added)
@@ -79,7 +78,7 @@ class Splicer:
             assert begin >= done, "edits do not overlap"
             out += [self._data[done:begin], new]
             done = end
-        return b"".join([*out, self._data[done:]])
+        return self._document.as_file(b"".join([*out, self._data[done:]]))
 
     def _addition(self, element: Element, added: dict[str, str]) -> tuple[tuple[int, int], bytes]:
         indent = self.indent_of(element)

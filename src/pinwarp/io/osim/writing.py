@@ -39,7 +39,7 @@ def spliced(model: OsimModel, bodies: Sequence[WarpedBody], mesh_names: Mapping[
     >>> spliced(model, [], {}) == model.data
     True
     """
-    splicer = Splicer(model.data)
+    splicer = Splicer(model.document)
     for body in bodies:
         for key, values in body.values.items():
             for name, numbers in values.items():
