@@ -180,7 +180,7 @@ def test_what_was_done_stays_when_the_cluster_is_lost(pinwarp_command, study, ou
 
     arguments = ("batch", study / "study.csv", "-o", out, "--session", study / "study.pinwarp.csv")
     with monkeypatch.context() as patch:
-        patch.setattr("pinwarp.cli.batch.runner_of", lambda *_: lost_after_one)
+        patch.setattr("pinwarp.cli.many.runner_of", lambda *_: lost_after_one)
         outcome = pinwarp_command(*arguments, "--scheduler", "tcp://node7:8786", exit_code=3)
     assert outcome.stdout.startswith("1 done, 0 unchanged, 0 failed of 3: see ")
     assert outcome.stderr == (

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
-import signal
-import threading
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from pinwarp.cli.many import Again, Jobs, Scheduler, do_all
 from pinwarp.cli.options import Applied, Blend, Penalty, with_options
 from pinwarp.cli.refine import Feature, Tolerance, Turn
 from pinwarp.cli.suggest import MirrorOption, Partial
-from pinwarp.cli.telling import INTERRUPTED, progress_bar, tell_error, tell_notes
+from pinwarp.cli.telling import tell_notes
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.groups import Curve
 from pinwarp.core.landmarks import Landmark, Role, Side
@@ -29,14 +26,8 @@ from pinwarp.session.importing.conversion import frame_notes
 from pinwarp.session.keeping.files import read_session
 from pinwarp.session.session import Session
 from pinwarp.session.study import batch as batches
-from pinwarp.session.study.cluster import runner_of
 from pinwarp.session.study.scheduler import address_of
-from pinwarp.session.study.subject import Task
-from pinwarp.session.study.workers import cores
 from pinwarp.session.warp.refining import RefinementOptions
-
-FAILED = 1
-CLUSTER_LOST = 3
 
 
 def batch(
@@ -108,22 +99,9 @@ def batch(
     feature: Feature = None,
     tolerance: Tolerance = None,
     turn: Turn = False,
-    jobs: Annotated[
-        int | None,
-        typer.Option(min=1, help="Processes at once; without it one for each core."),
-    ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS",
-            help="Do the work on the Dask cluster of this scheduler, such as "
-            "tcp://10.0.0.1:8786. Its workers read and write the files themselves: all paths "
-            "must lead to the same files there. Needs pinwarp\\[cluster].",
-        ),
-    ] = None,
-    force: Annotated[
-        bool, typer.Option("--force", help="Do subjects again that have not changed.")
-    ] = False,
+    jobs: Jobs = None,
+    scheduler: Scheduler = None,
+    force: Again = False,
 ) -> None:
     """Warp one source to many subjects and gather the figures in one table.
 
@@ -133,8 +111,7 @@ def batch(
     when one failed, 2 when nothing could begin, 3 when the cluster's scheduler was lost, and 130
     after Ctrl+C; after the last two the same command goes on from there.
     """
-    if scheduler is not None:
-        scheduler = address_of(scheduler)
+    scheduler = None if scheduler is None else address_of(scheduler)
     known = PoseSettings(mirror, partial)
     if known != PoseSettings() and not suggest:
         raise PinwarpError("--mirror and --partial are about suggesting: add --suggest.")
@@ -154,31 +131,14 @@ def batch(
     tell_notes(_about_groups(shared, refine))
     if subjects.unused:
         tell_notes([f"{manifest.name}: not used: {', '.join(subjects.unused)}."])
-    with progress_bar() as progress, _stopped_by_signals() as stop:
-        bar = progress.add_task("Warping", total=len(tasks))
-
-        def told(task: Task, status: str, words: str) -> None:
-            progress.advance(bar)
-            if status == batches.FAILED:
-                tell_error(f"{task.subject.name}: {words}")
-
-        tally = batches.run(
-            tasks,
-            out.absolute(),
-            runner_of(jobs or cores(), scheduler, stop, lambda words: tell_notes([words])),
-            force=force,
-            told=told,
-        )
-    typer.echo(
-        f"{tally.done} done, {tally.unchanged} unchanged, {tally.failed} failed "
-        f"of {tally.total}: see {out / batches.SUMMARY}"
+    folder = out.absolute()
+    do_all(
+        lambda runner, told: batches.run(tasks, folder, runner, force=force, told=told),
+        len(tasks),
+        out,
+        jobs,
+        scheduler,
     )
-    if tally.is_interrupted:
-        why = tally.ended or "Stopped."
-        tell_error(f"{why} What was done stays: the same command goes on from there.")
-        raise typer.Exit(CLUSTER_LOST if tally.ended else INTERRUPTED)
-    if tally.failed:
-        raise typer.Exit(FAILED)
 
 
 def _about_groups(session: Session, refine: bool) -> list[str]:
@@ -239,27 +199,3 @@ def _read(path: Path, role: Role, unit: str) -> tuple[Landmark, ...]:
     skipped = (f"line {x.line} was skipped: {x.reason}." for x in reading.skipped)
     tell_notes((*reading.notes, *frame_notes(reading, unit), *skipped), path.name)
     return tuple(replace(x, role=role) for x in reading.landmarks)
-
-
-@contextlib.contextmanager
-def _stopped_by_signals() -> Iterator[threading.Event]:
-    """Give an event that Ctrl+C sets, and SIGTERM, by which a cluster's queue ends a job.
-
-    Nothing is interrupted at an unlucky moment; whoever presses Ctrl+C again means it.
-    """
-    stop = threading.Event()
-
-    def handle(_number: int, _frame: object) -> None:
-        if stop.is_set():
-            raise KeyboardInterrupt
-        stop.set()
-
-    if threading.current_thread() is not threading.main_thread():
-        yield stop
-        return
-    before = {number: signal.signal(number, handle) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield stop
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

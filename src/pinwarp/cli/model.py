@@ -8,17 +8,22 @@ from typing import Annotated, Any
 
 import typer
 
+from pinwarp.cli.many import Jobs, Scheduler, do_all
 from pinwarp.cli.options import Force
 from pinwarp.cli.telling import refuse_existing, tell_notes
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.model_rows import Outcome
 from pinwarp.core.words import counted, some_of
+from pinwarp.io.model_manifest import read_model_manifest
 from pinwarp.io.model_report import report_json, report_text
 from pinwarp.io.osim.reading import read_model
 from pinwarp.session.model.overview import overview
 from pinwarp.session.model.study import ModelStudy, read_study, study_of
 from pinwarp.session.model.warped import WarpedModel, warped_model
 from pinwarp.session.model.writing import SUFFIX, outputs_of, write_model
+from pinwarp.session.study.batch import run_all
+from pinwarp.session.study.model_cohort import MODELS, plan_models
+from pinwarp.session.study.scheduler import address_of
 from pinwarp.version import __version__
 
 FLAGGED = 1
@@ -42,7 +47,9 @@ def model(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", metavar="NEW.osim", help="The new model."),
+        typer.Option(
+            "--out", "-o", metavar="OUT", help="The new model, NEW.osim; with --subjects a folder."
+        ),
     ] = None,
     turn: Annotated[
         list[str] | None,
@@ -76,6 +83,17 @@ def model(
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit with 1 where an element is flagged.")
     ] = False,
+    subjects: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="MANIFEST.csv",
+            help="Make the model that of many subjects: one row for each, with name and, in a "
+            "column called as the body, the file of its landmarks on the subject (and BODY_mesh "
+            "where semilandmarks slide). OUT is then a folder for NAME.osim and summary.csv.",
+        ),
+    ] = None,
+    jobs: Jobs = None,
+    scheduler: Scheduler = None,
     force: Force = False,
 ) -> None:
     """Warp the bones of a model to a subject's, with all that stands on them.
@@ -83,11 +101,12 @@ def model(
     Without a body it lists what is on each. The new model's meshes go into NEW_Geometry beside
     it, and NEW_report.csv says of every element whether it was warped, kept or flagged.
     """
+    scheduler = None if scheduler is None else address_of(scheduler)
     is_model = model.suffix.lower() == SUFFIX
     if is_model and not body:
         _list(model, geometry or [], as_json)
         return
-    if out is None and not dry_run:
+    if out is None and not dry_run and subjects is None:
         raise PinwarpError("Name the new model: -o NEW.osim, or look first with --dry-run.")
     if is_model:
         sessions = [_split(each) for each in body or []]
@@ -106,6 +125,14 @@ def model(
                 "it there."
             )
         study = read_study(model, folders=geometry or ())
+    if subjects is not None:
+        if out is None or dry_run or as_json or strict:
+            raise PinwarpError(
+                "With --subjects name a folder with -o; a dry run, --json and --strict are of one "
+                "model."
+            )
+        _cohort(study, subjects, out, [model], jobs, scheduler, force)
+        return
     warped = warped_model(study)
     if out is not None and not dry_run:
         outputs = outputs_of(warped, out)
@@ -128,6 +155,29 @@ def _split(words: str) -> tuple[str, Path]:
     if not (name and separator and session):
         raise PinwarpError(f"--body {words}: name a body and its session, as in thigh=thigh.csv.")
     return name, Path(session)
+
+
+def _cohort(
+    study: ModelStudy,
+    path: Path,
+    out: Path,
+    inputs: list[Path],
+    jobs: int | None,
+    scheduler: str | None,
+    force: bool,
+) -> None:
+    enabled = [each.body.rsplit("/", 1)[-1] for each in study.bodies if each.enabled]
+    manifest = read_model_manifest(path, enabled)
+    folder = out.absolute()
+    sessions = [each.path for each in study.bodies if each.path is not None]
+    tasks = plan_models(manifest, study, folder, inputs=[*inputs, *sessions])
+    do_all(
+        lambda runner, told: run_all(MODELS, tasks, folder, runner, force=force, told=told),
+        len(tasks),
+        out,
+        jobs,
+        scheduler,
+    )
 
 
 def _list(path: Path, folders: list[Path], as_json: bool) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any, Generic, Protocol, TypeVar
 
 from pinwarp.core.errors import FileFormatError, PinwarpError, words_of
 from pinwarp.core.first_guess import Verdict
@@ -30,6 +31,50 @@ DONE, FAILED = "done", "failed"
 DOUBTFUL = (Verdict.ASK.value, Verdict.NONE.value)
 # The table is written again as often; what a power cut takes away is done again.
 SECONDS_BETWEEN_SAVES = 1.0
+
+
+class Job(Protocol):
+    """Something to be done for a subject."""
+
+    @property
+    def subject(self) -> Named:
+        """The subject."""
+
+    @property
+    def outputs(self) -> tuple[Path, ...]:
+        """All files that are written."""
+
+
+class Named(Protocol):
+    """What has a name of its own in a table."""
+
+    @property
+    def name(self) -> str:
+        """The name."""
+
+
+J = TypeVar("J", bound=Job)
+R = TypeVar("R")
+Told = Callable[[Any, str, str], None]
+
+
+@dataclass(frozen=True)
+class Kind(Generic[J, R]):
+    """A kind of work, to be done for every subject.
+
+    Parameters
+    ----------
+    work
+        Does it; importable by its name.
+    made_from
+        The hash of everything that a task depends on.
+    row
+        The row of the table for what came of a task.
+    """
+
+    work: Callable[[J], R]
+    made_from: Callable[[J], str]
+    row: Callable[[J, R | Exception], SummaryRow]
 
 
 @dataclass(frozen=True)
@@ -187,7 +232,34 @@ def run(
     runner: Runner,
     *,
     force: bool = False,
-    told: Callable[[Task, str, str], None] = lambda _task, _status, _words: None,
+    told: Told = lambda _task, _status, _words: None,
+) -> Tally:
+    """Warp the source to every subject; see :func:`run_all`.
+
+    Parameters
+    ----------
+    tasks
+        From :func:`plan`.
+    folder, runner, force, told
+        As there.
+
+    Raises
+    ------
+    OSError
+        When the table cannot be written.
+    """
+    kind = Kind(warp_subject, made_from, _row)
+    return run_all(kind, tasks, folder, runner, force=force, told=told)
+
+
+def run_all(
+    kind: Kind[J, R],
+    tasks: Sequence[J],
+    folder: Path,
+    runner: Runner,
+    *,
+    force: bool = False,
+    told: Told = lambda _task, _status, _words: None,
 ) -> Tally:
     """Do what is to be done and keep the table of results up to date.
 
@@ -197,8 +269,10 @@ def run(
 
     Parameters
     ----------
+    kind
+        What is done.
     tasks
-        From :func:`plan`.
+        For whom.
     folder
         Where the table goes; it is made where it is missing.
     runner
@@ -218,7 +292,7 @@ def run(
         When the table cannot be written.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    summary = _Summary(folder / SUMMARY, tasks)
+    summary = _Summary(folder / SUMMARY, tasks, kind.made_from)
     # Whether it can be written is better known before a night of work than after it.
     summary.save()
     waiting = [task for task in tasks if force or not summary.is_unchanged(task)]
@@ -229,9 +303,9 @@ def run(
     count = {DONE: 0, FAILED: 0}
     ended = ""
     try:
-        with closing(runner(warp_subject, waiting)) as results:
+        with closing(runner(kind.work, waiting)) as results:
             for task, result in results:
-                row = _row(task, result)
+                row = kind.row(task, result)
                 summary.take(row)
                 count[row["status"]] += 1
                 told(task, row["status"], row.get("error", ""))
@@ -252,8 +326,9 @@ def run(
 class _Summary:
     """The table of results, with what an earlier run left in it."""
 
-    def __init__(self, path: Path, tasks: Sequence[Task]) -> None:
+    def __init__(self, path: Path, tasks: Sequence[Job], made_from: Callable[[Any], str]) -> None:
         self.path = path
+        self._made_from = made_from
         earlier = read_summary(path)
         self._order = [task.subject.name for task in tasks]
         # What was done for another manifest into this folder stays behind the subjects of this.
@@ -265,13 +340,13 @@ class _Summary:
         self._rows = {name: earlier[name] for name in self._order if name in earlier}
         self._saved = time.monotonic()
 
-    def is_unchanged(self, task: Task) -> bool:
+    def is_unchanged(self, task: Job) -> bool:
         """Whether the task's outputs are there, made from what they would be made from now."""
         row = self._rows.get(task.subject.name, {})
         if row.get("status") != DONE or not all(path.is_file() for path in task.outputs):
             return False
         try:
-            return row.get("made_from") == made_from(task)
+            return row.get("made_from") == self._made_from(task)
         except (FileFormatError, OSError):
             return False
 

@@ -290,9 +290,9 @@ def made_from(task: Task) -> str:
         tuple((x.name, x.source, x.role.value, x.enabled) for x in session.landmarks),
         session.settings,
         session.unit,
-        *_of_groups(session),
-        _content(task, subject.destination_landmarks),
-        _content(task, subject.destination_mesh),
+        *groups_told(session),
+        content_hash(task.manifest, subject.line, subject.destination_landmarks),
+        content_hash(task.manifest, subject.line, subject.destination_mesh),
         task.mesh.suffix,
         *(() if task.refinement is None else (astuple(task.refinement), METHOD)),
         *_of_suggestion(task),
@@ -300,7 +300,8 @@ def made_from(task: Task) -> str:
     return f"sha256:{hashlib.sha256(repr(parts).encode()).hexdigest()[:32]}"
 
 
-def _of_groups(session: Session) -> tuple[object, ...]:
+def groups_told(session: Session) -> tuple[object, ...]:
+    """Return what of a session's curves and patches a warp depends on, for a hash."""
     # Sets have no order of their own; without groups the hash is what it always was.
     groups = [(replace(x, excluded=frozenset()), sorted(x.excluded)) for x in session.groups]
     return (groups, SLIDING_METHOD) if groups else ()
@@ -310,17 +311,24 @@ def _of_suggestion(task: Task) -> tuple[object, ...]:
     if (suggestion := task.suggestion) is None:
         return ()
     there = suggestion.session.exists()
-    looked_at = _content(task, suggestion.session) if there else ""
+    looked_at = content_hash(task.manifest, task.subject.line, suggestion.session) if there else ""
     return (astuple(suggestion.settings), GUESS_METHOD, looked_at)
 
 
-def _content(task: Task, path: Path | None) -> str:
+def content_hash(manifest: Path, line: int, path: Path | None) -> str:
+    """Return the hash of a file that a row of a manifest names; nothing where it names none.
+
+    Raises
+    ------
+    FileFormatError
+        When the file is missing or cannot be read; the message names the line of the manifest.
+    """
     if path is None:
         return ""
     found = hash_of(path)
     if found is None:
         words = "cannot be read." if path.exists() else "is not there. Was it moved or renamed?"
-        raise FileFormatError(task.manifest, f"The file {path} {words}", task.subject.line)
+        raise FileFormatError(manifest, f"The file {path} {words}", line)
     return found
 
 
