@@ -107,7 +107,7 @@ def test_subjects_are_done_in_processes_of_their_own_as_in_this_one(
 @pytest.mark.parametrize("more", [["--dry-run"], ["--json"], ["--strict"]])
 def test_what_is_of_one_model_is_refused_for_many(pinwarp_command, cohort, tmp_path, more):
     told = pinwarp_command(*options(cohort, tmp_path / "out", *more), exit_code=2)
-    assert "are of one model" in told.stderr
+    assert "of one model" in told.stderr
     assert not (tmp_path / "out").exists()
 
 

@@ -350,3 +350,22 @@ def test_a_session_without_a_file_cannot_be_named_by_a_study(leg, tmp_path):
     study = study_of(read_model(leg), {"thigh": session_on(leg, "thigh")})
     with pytest.raises(PinwarpError, match="save it first"):
         write_study(tmp_path / "leg.pinwarp-model.csv", study)
+
+
+def test_a_muscle_that_spans_a_warped_body_without_touching_it_is_named_too(leg):
+    # It runs from the hip to the shank; its length changes with the thigh's.
+    edited_model(
+        leg,
+        ("<location>0.03 -0.37 0</location>", "<location>0.05 -0.1 0.05</location>"),
+        (
+            "<socket_parent_frame>/bodyset/thigh</socket_parent_frame><location>0.05",
+            "<socket_parent_frame>/bodyset/hip</socket_parent_frame><location>0.05",
+        ),
+    )
+    model = read_model(leg)
+    thigh, hip = (bone_of(model, f"/bodyset/{name}").parts for name in ("thigh", "hip"))
+    assert not any(point.path.startswith("/forceset/rf") for point in thigh.points)
+    for parts in (thigh, hip):
+        assert "/forceset/rf" in {part.path for part in parts.kept}
+    shank = bone_of(model, "/bodyset/shank").parts
+    assert "/forceset/add" not in {part.path for part in shank.kept}

@@ -17,6 +17,8 @@ from pinwarp.core.words import counted, some_of
 from pinwarp.io.model_manifest import read_model_manifest
 from pinwarp.io.model_report import report_json, report_text
 from pinwarp.io.osim.reading import read_model
+from pinwarp.session.model.muscle_lengths import with_lengths
+from pinwarp.session.model.opensim_check import check_in_opensim
 from pinwarp.session.model.overview import overview
 from pinwarp.session.model.study import ModelStudy, read_study, study_of
 from pinwarp.session.model.warped import WarpedModel, warped_model
@@ -83,6 +85,22 @@ def model(
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit with 1 where an element is flagged.")
     ] = False,
+    check: Annotated[
+        bool,
+        typer.Option(
+            "--check",
+            help="Load the result in OpenSim and compare muscle lengths and moment arms before "
+            "and after. Needs pinwarp\\[opensim].",
+        ),
+    ] = False,
+    scale_lengths: Annotated[
+        bool,
+        typer.Option(
+            "--scale-lengths",
+            help="Multiply fibre and tendon lengths by how much longer OpenSim finds the path, as "
+            "its ScaleTool does; they are kept otherwise. Needs pinwarp\\[opensim].",
+        ),
+    ] = False,
     subjects: Annotated[
         Path | None,
         typer.Option(
@@ -126,23 +144,31 @@ def model(
             )
         study = read_study(model, folders=geometry or ())
     if subjects is not None:
-        if out is None or dry_run or as_json or strict:
+        if out is None or dry_run or as_json or strict or check or scale_lengths:
             raise PinwarpError(
-                "With --subjects name a folder with -o; a dry run, --json and --strict are of one "
-                "model."
+                "With --subjects name a folder with -o; a dry run, --json, --strict, --check and "
+                "--scale-lengths are of one model."
             )
         _cohort(study, subjects, out, [model], jobs, scheduler, force)
         return
     warped = warped_model(study)
+    found = None
+    if check or scale_lengths:
+        found = check_in_opensim(warped)
+        warped = with_lengths(warped, found, scale=scale_lengths)
     if out is not None and not dry_run:
         outputs = outputs_of(warped, out)
         refuse_existing(outputs, force)
         write_model(warped, out, force=True)
     if as_json:
-        told = report_json(warped.rows, _about(warped, None if dry_run else out))
+        about = _about(warped, None if dry_run else out)
+        if found is not None:
+            about["opensim"] = found.as_json()
+        told = report_json(warped.rows, about)
         typer.echo(json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False))
     else:
-        typer.echo(report_text(warped.rows, warped.notes))
+        notes = (*warped.notes, *(found.in_words() if found is not None else ()))
+        typer.echo(report_text(warped.rows, notes))
         if out is not None and not dry_run:
             meshes = counted(len(warped.meshes), "mesh", "meshes")
             typer.echo(f"{out}: {meshes} beside it, {outputs[1].name} says all of it")

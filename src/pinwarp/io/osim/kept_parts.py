@@ -83,12 +83,21 @@ def _bodies_named(model: OsimModel, element: Element) -> set[str]:
 
 
 def _bodies_passed(model: OsimModel, force: Element) -> set[str]:
-    """Return the bodies that the points of a force's path are on."""
-    return {
-        model.body_of(model.frame_of(point, "socket_parent_frame"))
-        for point in force.walk()
-        if point.tag in ("PathPoint", "ConditionalPathPoint", "MovingPathPoint")
-    }
+    """Return the bodies that a force's path is on, and those that it spans."""
+    chains = []
+    for point in force.walk():
+        if point.tag not in ("PathPoint", "ConditionalPathPoint", "MovingPathPoint"):
+            continue
+        chain = [model.body_of(model.frame_of(point, "socket_parent_frame"))]
+        while (parent := model.parents.get(chain[-1])) is not None and parent not in chain:
+            chain.append(parent)
+        chains.append(chain)
+    if not chains:
+        return set()
+    shared = set(chains[0]).intersection(*chains)
+    passed = {body for chain in chains for body in chain} - shared
+    # Where all chains meet is passed, what is behind that is not.
+    return passed | set([body for body in chains[0] if body in shared][:1])
 
 
 def _bodies_moved(model: OsimModel, path: Element) -> set[str]:

@@ -82,6 +82,19 @@ class OsimModel:
         return {}
 
     @cached_property
+    def parents(self) -> dict[str, str]:
+        """The body, or the ground, that each body is joined to as its child."""
+        found: dict[str, str] = {}
+        for joint in self.objects:
+            if joint.tag.endswith("Joint"):
+                parent, child = (
+                    self.body_of(self.frame_of(joint, socket))
+                    for socket in ("socket_parent_frame", "socket_child_frame")
+                )
+                found.setdefault(child, parent)
+        return found
+
+    @cached_property
     def components(self) -> dict[str, Element]:
         """Its named elements by path as OpenSim writes it; of two with one path, the first."""
         found: dict[str, Element] = {}

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import PurePosixPath
 
+from numpy.typing import ArrayLike
+
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.model_warp import WarpedBody
 from pinwarp.io.osim.functions import put_function
@@ -14,7 +16,12 @@ from pinwarp.io.osim.splicing import Splicer
 _NOT_IN_A_NAME = '\\/:*?"<>|%&'
 
 
-def spliced(model: OsimModel, bodies: Sequence[WarpedBody], mesh_names: Mapping[int, str]) -> bytes:
+def spliced(
+    model: OsimModel,
+    bodies: Sequence[WarpedBody],
+    mesh_names: Mapping[int, str],
+    lengths: Mapping[int, Mapping[str, ArrayLike]] | None = None,
+) -> bytes:
     """Return the bytes of a model with the new values of its bodies.
 
     Parameters
@@ -25,6 +32,8 @@ def spliced(model: OsimModel, bodies: Sequence[WarpedBody], mesh_names: Mapping[
         Its warped bodies.
     mesh_names
         The files of the new meshes as the model is to name them, by key.
+    lengths
+        New lengths of muscles by key and property.
 
     Returns
     -------
@@ -40,6 +49,9 @@ def spliced(model: OsimModel, bodies: Sequence[WarpedBody], mesh_names: Mapping[
     True
     """
     splicer = Splicer(model.document)
+    for key, numbers_by_name in (lengths or {}).items():
+        for name, numbers in numbers_by_name.items():
+            splicer.set_numbers(model.elements[key], name, numbers)
     for body in bodies:
         for key, values in body.values.items():
             for name, numbers in values.items():

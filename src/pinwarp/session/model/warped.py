@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
@@ -17,6 +20,8 @@ from pinwarp.session.keeping.files import with_meshes
 from pinwarp.session.model.body_warp import BodyWarp, body_warp
 from pinwarp.session.model.study import ModelStudy, StudyBody
 from pinwarp.session.session import Session
+
+Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +40,8 @@ class WarpedModel:
         What became of every element that stands on them, each once.
     notes
         What is to be known, as sentences.
+    lengths
+        New lengths of muscles by key and property, where they were scaled.
 
     Examples
     --------
@@ -57,6 +64,7 @@ class WarpedModel:
     warps: tuple[BodyWarp, ...]
     rows: tuple[ElementRow, ...]
     notes: tuple[str, ...]
+    lengths: Mapping[int, Mapping[str, Matrix]] = field(default_factory=dict)
 
     @property
     def flagged(self) -> tuple[ElementRow, ...]:
@@ -79,7 +87,7 @@ class WarpedModel:
 
     def data(self, folder: str) -> bytes:
         """Return the bytes of the new model, its meshes in a folder beside it."""
-        return spliced(self.study.model, self.bodies, self.mesh_names(folder))
+        return spliced(self.study.model, self.bodies, self.mesh_names(folder), self.lengths)
 
 
 def warped_model(
