@@ -5,9 +5,16 @@ from __future__ import annotations
 import json
 import os
 
+import numpy as np
 import pytest
 from tests.osim_kinematics import Kinematics
 from tests.osim_models import copied_model, edited_model, session_file
+
+from pinwarp.core.landmarks import Side
+from pinwarp.io.landmark_files import write_landmarks
+from pinwarp.io.meshes import read_mesh
+from pinwarp.session.keeping.files import read_session
+from pinwarp.session.warp.solved import solved
 
 
 @pytest.fixture
@@ -145,3 +152,18 @@ def test_a_study_takes_no_bodies_beside_its_own(pinwarp_command, leg, thigh):
     )
     told = pinwarp_command("model", study, "--keep", "/x", "--dry-run", exit_code=2)
     assert "change it there" in told.stderr
+
+
+def test_what_else_warps_a_session_warps_one_on_a_bone(leg, tmp_path, pinwarp_command):
+    path = session_file(leg, "thigh")
+    pinwarp_command("warp", path, "-o", tmp_path / "out")
+    warped = read_mesh(tmp_path / "out" / "thigh_warped.vtp").mesh
+    expected = solved(read_session(path)).mesh
+    np.testing.assert_allclose(warped.vertices, expected.vertices, atol=1e-12)
+    assert "24 pairs" in pinwarp_command("check", path).stdout
+    write_landmarks(tmp_path / "anna.csv", read_session(path).landmarks, Side.DESTINATION)
+    (tmp_path / "study.csv").write_text("name,destination_landmarks\nanna,anna.csv\n")
+    out = tmp_path / "many"
+    pinwarp_command("batch", tmp_path / "study.csv", "--session", path, "-o", out, "--jobs", 1)
+    many = read_mesh(out / "anna_warped.vtp").mesh
+    np.testing.assert_allclose(many.vertices, expected.vertices, atol=1e-12)

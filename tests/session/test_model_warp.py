@@ -179,6 +179,17 @@ def test_a_session_on_a_bone_is_saved_and_opened_with_the_models_mesh(leg):
     assert "has changed" in read_session(path).source.notes[0]
 
 
+def test_a_warp_that_folds_is_told(leg):
+    session = session_on(leg, "thigh")
+    first, second, *rest = session.landmarks
+    swapped = (
+        replace(first, destination=second.destination),
+        replace(second, destination=first.destination),
+    )
+    notes = body_warp(replace(session, landmarks=(*swapped, *rest)), bone_in(leg)).notes
+    assert "The warp folds at" in notes[0]
+
+
 def test_a_session_whose_model_is_gone_keeps_its_reference(leg):
     path = session_file(leg, "thigh")
     leg.unlink()

@@ -83,7 +83,7 @@ def report_text(rows: Sequence[ElementRow], notes: Sequence[str] = ()) -> str:
     >>> row = ElementRow("thigh", "/markerset/KNEE", "marker", 7, True, "carried", 0.0123456)
     >>> print(report_text([row]))
     thigh
-      1 marker warped, moved by 12.3 mm on average and 12.3 mm at most
+      1 marker warped, moved by 12.3 mm
     1 warped, 0 kept, 0 flagged
     """
     lines: list[str] = []
@@ -126,7 +126,9 @@ def _kind(kind: str, rows: Sequence[ElementRow]) -> list[str]:
         far = ""
         if moved:
             mean = sum(moved) / len(moved)
-            far = f", moved by {mean:.1f} mm on average and {max(moved):.1f} mm at most"
+            on_average = "" if len(moved) == 1 else f" on average and {max(moved):.1f} mm at most"
+            verb = "moved" if state == "warped" else "where the bone moves"
+            far = f", {verb} by {mean:.1f} mm{on_average}"
         flags = sum(bool(row.flag) for row in chosen)
         told = f", {flags} flagged" if flags else ""
         lines.append(f"  {counted(len(chosen), kind, _PLURALS.get(kind, ''))} {state}{far}{told}")

@@ -13,7 +13,7 @@ from pinwarp.core.frame_warp import BodyRules, CarriedFrames
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.model_parts import BodyParts
 from pinwarp.core.placement import Placement
-from pinwarp.io.meshes import MeshFile
+from pinwarp.io.meshes import MeshFile, read_mesh
 from pinwarp.io.osim.body_parts import body_parts
 from pinwarp.io.osim.geometry import BodyMesh, fingerprint, joined, read_meshes
 from pinwarp.io.osim.model import OsimModel
@@ -125,6 +125,34 @@ def split_bone_path(path: str | Path) -> tuple[Path, str] | None:
     """
     found = _BONE.fullmatch(Path(path).as_posix())
     return None if found is None else (Path(found["model"]), found["body"])
+
+
+def read_any_mesh(path: str | Path) -> MeshFile:
+    """Read a mesh's file, or the bone of a body where a path names one.
+
+    Raises
+    ------
+    FileFormatError
+        As :func:`~pinwarp.io.meshes.read_mesh` and :func:`read_bone`.
+
+    Examples
+    --------
+    >>> from pinwarp.io.samples import sample_model
+    >>> len(read_any_mesh(f"{sample_model()}#/bodyset/shank").mesh.vertices)
+    92
+    """
+    return read_mesh(path) if split_bone_path(path) is None else read_bone(path)
+
+
+def mesh_suffix(path: Path) -> str:
+    """Return the suffix of a mesh that is made of the one at a path, in lower case.
+
+    Examples
+    --------
+    >>> mesh_suffix(Path("femur.STL")), mesh_suffix(Path("leg.osim#/bodyset/thigh"))
+    ('.stl', '.vtp')
+    """
+    return path.suffix.lower() if split_bone_path(path) is None else ".vtp"
 
 
 def read_bone(path: str | Path) -> MeshFile:

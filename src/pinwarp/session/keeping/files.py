@@ -10,8 +10,8 @@ from pathlib import Path
 from pinwarp.core.landmarks import Side
 from pinwarp.io import session_file
 from pinwarp.io.mesh_search import find_mesh
-from pinwarp.io.meshes import MeshFile, read_mesh
-from pinwarp.io.osim.bone import read_bone, split_bone_path
+from pinwarp.io.meshes import MeshFile
+from pinwarp.io.osim.bone import read_any_mesh, split_bone_path
 from pinwarp.io.session_file import MeshReference
 from pinwarp.session.session import Session, as_seen, from_record, to_record
 from pinwarp.session.warp.rested import with_rest
@@ -135,8 +135,7 @@ def _is_there(path: Path) -> bool:
 
 
 def _read(reference: MeshReference) -> MeshFile:
-    is_bone = split_bone_path(reference.path) is not None
-    file = read_bone(reference.path) if is_bone else read_mesh(reference.path)
+    file = read_any_mesh(reference.path)
     if file.sha256 != reference.sha256:
         file = replace(file, notes=(*file.notes, CHANGED))
     return as_seen(file, reference)

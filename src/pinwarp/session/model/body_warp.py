@@ -10,9 +10,12 @@ from numpy.typing import NDArray
 
 from pinwarp.core.components import Components
 from pinwarp.core.errors import PinwarpError
+from pinwarp.core.jacobian import determinants, jacobians
 from pinwarp.core.lengths import rms
 from pinwarp.core.prediction import Prediction, prediction_of
+from pinwarp.core.spline import Spline
 from pinwarp.core.surface_distance import SurfaceIndex
+from pinwarp.core.words import counted
 from pinwarp.io.osim.bone import Bone
 from pinwarp.session.model.body_view import BodyView, in_body_frame, view_of
 from pinwarp.session.session import Session
@@ -100,13 +103,14 @@ def body_warp(session: Session, bone: Bone) -> BodyWarp:
     ratio = _size(solution.destination) / _size(source) if _size(source) > 0 else 1.0
     _check_size(bone, ratio)
     few = f"With {len(source)} pairs the subject's size is a guess: place at least 8."
+    spline = solution.part(Components.WITHOUT_POSE)
     notes = (
         *notes,
         *about_refinement,
         *not_sliding_note(solution.result),
         *((few,) if len(source) < FEW else ()),
+        *_about_folds(spline, bone, view),
     )
-    spline = solution.part(Components.WITHOUT_POSE)
     prediction = _prediction(solution)
 
     def carried(places: Matrix) -> Matrix:
@@ -130,6 +134,16 @@ def _prediction(solution: SolvedWarp) -> Prediction | None:
     if not settings.is_regular or result.is_fitted:
         return None
     return prediction_of(solution.factor, solution.destination, settings.penalty)
+
+
+def _about_folds(spline: Spline, bone: Bone, view: BodyView) -> tuple[str, ...]:
+    if bone.mesh is None:
+        return ()
+    determinant = determinants(jacobians(spline, view.into(bone.mesh.vertices)))
+    folded = int((determinant <= 0).sum())
+    where = counted(folded, "vertex", "vertices")
+    words = f"The warp folds at {where} of its mesh: look for a wrong pair in the session."
+    return (words,) if folded else ()
 
 
 def _size(places: Matrix) -> float:

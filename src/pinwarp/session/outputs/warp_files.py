@@ -15,7 +15,8 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.core.mirror import mirrored_points
 from pinwarp.core.spline import Spline
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES, read_landmarks
-from pinwarp.io.meshes import MESH_SUFFIXES, read_mesh, write_mesh
+from pinwarp.io.meshes import MESH_SUFFIXES, write_mesh
+from pinwarp.io.osim.bone import mesh_suffix, read_any_mesh, split_bone_path
 from pinwarp.session.importing.conversion import frame_notes, write_in_frame
 from pinwarp.session.outputs.replacing import refuse_to_replace
 from pinwarp.session.session import Session
@@ -65,6 +66,8 @@ def outputs_of(inputs: Sequence[Path], out: Path, *, kept: Iterable[Path] = ()) 
 def _warped_name(path: Path) -> str:
     # All of a suffix such as .landmarks.csv stays behind.
     stem, dot, suffixes = path.name.partition(".")
+    if split_bone_path(path) is not None:
+        return f"{path.name}{WARPED}{mesh_suffix(path)}"
     if path.suffix.lower() in MESH_SUFFIXES:
         stem, dot, suffixes = path.stem, ".", path.suffix[1:]
     return f"{stem}{WARPED}{dot}{suffixes}"
@@ -124,8 +127,8 @@ class FileWarper:
             When the output cannot be written.
         """
         output.parent.mkdir(parents=True, exist_ok=True)
-        if source.suffix.lower() in MESH_SUFFIXES:
-            file = read_mesh(source)
+        if mesh_suffix(source) in MESH_SUFFIXES:
+            file = read_any_mesh(source)
             faces = file.mesh.faces[:, ::-1] if len(self._axes) % 2 else file.mesh.faces
             write_mesh(output, Mesh(self._carried(file.mesh.vertices), faces))
             return file.notes

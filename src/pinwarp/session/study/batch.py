@@ -17,6 +17,7 @@ from pinwarp.core.pose import PoseSettings
 from pinwarp.core.settings import WarpSettings
 from pinwarp.io.manifest import Manifest, Subject
 from pinwarp.io.meshes import MESH_SUFFIXES
+from pinwarp.io.osim.bone import mesh_suffix
 from pinwarp.io.summary_file import SummaryRow, read_summary, write_summary
 from pinwarp.session.outputs.replacing import refuse_to_replace
 from pinwarp.session.session import Session, to_record
@@ -165,7 +166,7 @@ def plan(
     landmarks = places_of(source.landmarks)
     if not any(x.role is Role.PAIR and x.enabled for x in landmarks):
         raise PinwarpError("The source has no landmark to be paired with the subjects'.")
-    suffix = suffix or source.source.path.suffix.lower()
+    suffix = suffix or mesh_suffix(source.source.path)
     if suffix not in MESH_SUFFIXES:
         known = ", ".join(MESH_SUFFIXES)
         raise PinwarpError(f"Meshes of the type {suffix!r} are not supported: choose of {known}.")

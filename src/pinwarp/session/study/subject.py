@@ -17,6 +17,7 @@ from pinwarp.io.group_record import METHOD as SLIDING_METHOD
 from pinwarp.io.landmark_files import LandmarkReading, read_landmarks, write_landmarks
 from pinwarp.io.manifest import Subject
 from pinwarp.io.meshes import MeshFile, read_mesh, write_mesh
+from pinwarp.io.osim.bone import read_any_mesh
 from pinwarp.io.reading import hash_of
 from pinwarp.io.refinement_record import METHOD
 from pinwarp.io.session_file import MeshReference
@@ -182,7 +183,7 @@ def _begun(task: Task) -> tuple[Session, tuple[str, ...]]:
 # All subjects of a process have the same source: it is read once.
 @functools.lru_cache(maxsize=1)
 def _source(reference: MeshReference) -> MeshFile:
-    file = read_mesh(reference.path)
+    file = read_any_mesh(reference.path)
     if file.sha256 != reference.sha256:
         raise FileFormatError(file.path, "The source mesh changed meanwhile. Run the batch again.")
     return as_seen(file, reference)
