@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,7 +17,8 @@ from pinwarp.gui.tasks.file_tasks import FileTasks, Progress
 from pinwarp.gui.tasks.jobs import Cancelled
 from pinwarp.io.mesh_reference import MeshReference
 from pinwarp.io.mesh_search import FoundMesh, find_mesh
-from pinwarp.io.meshes import MeshFile, read_mesh
+from pinwarp.io.meshes import MeshFile
+from pinwarp.io.osim.bone import is_mesh_there, read_any_mesh
 from pinwarp.io.session_file import SessionRecord
 from pinwarp.session.session import Session, from_record
 
@@ -61,7 +61,7 @@ class SessionMeshes:
 
         RangeError where it is too large or too small to be drawn.
         """
-        file = read_mesh(path, progress=lambda share, stage: progress(0.7 * share, stage))
+        file = read_any_mesh(path, progress=lambda share, stage: progress(0.7 * share, stage))
         progress(0.75, "preparing to draw")
         check_drawable(file.mesh.vertices)
         self._keep_surface(file.mesh, Surface(file.mesh))
@@ -93,7 +93,7 @@ class SessionMeshes:
         there = {side: mesh for side, mesh in references.items() if mesh is not None}
         opening = _Opening(record, folder, title, arrived, there)
         for side, reference in there.items():
-            if os.path.isfile(reference.path):
+            if is_mesh_there(reference.path):
                 opening.places[side] = reference.path
         self._find(opening)
 

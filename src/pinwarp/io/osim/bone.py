@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -127,8 +128,31 @@ def split_bone_path(path: str | Path) -> tuple[Path, str] | None:
     return None if found is None else (Path(found["model"]), found["body"])
 
 
-def read_any_mesh(path: str | Path) -> MeshFile:
+def is_mesh_there(path: str | Path) -> bool:
+    """Whether there is a file at a path, or the model where it names a body of one.
+
+    Examples
+    --------
+    >>> from pinwarp.io.samples import sample_model
+    >>> is_mesh_there(f"{sample_model()}#/bodyset/shank"), is_mesh_there("no.osim#/bodyset/shank")
+    (True, False)
+    """
+    named = split_bone_path(path)
+    # Unlike Path.is_file, this never fails where a folder may not be looked into.
+    return os.path.isfile(path if named is None else named[0])
+
+
+def read_any_mesh(
+    path: str | Path, *, progress: Callable[[float, str], None] | None = None
+) -> MeshFile:
     """Read a mesh's file, or the bone of a body where a path names one.
+
+    Parameters
+    ----------
+    path
+        Of the file, or as of :func:`bone_path`.
+    progress
+        Told as by :func:`~pinwarp.io.meshes.read_mesh`; a bone is read in one go.
 
     Raises
     ------
@@ -141,7 +165,9 @@ def read_any_mesh(path: str | Path) -> MeshFile:
     >>> len(read_any_mesh(f"{sample_model()}#/bodyset/shank").mesh.vertices)
     92
     """
-    return read_mesh(path) if split_bone_path(path) is None else read_bone(path)
+    if split_bone_path(path) is None:
+        return read_mesh(path, progress=progress)
+    return read_bone(path)
 
 
 def mesh_suffix(path: Path) -> str:

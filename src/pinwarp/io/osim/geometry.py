@@ -71,7 +71,8 @@ def find_mesh_file(model: OsimModel, element: Element, folders: Sequence[Path] =
     folders
         Where it is looked for, too.
     """
-    name = model.text(element, "mesh_file")
+    # Models from Windows have its slashes.
+    name = model.text(element, "mesh_file").replace("\\", "/")
     beside = model.path.parent
     for folder in (beside, beside / FOLDER, *folders):
         place = folder / name

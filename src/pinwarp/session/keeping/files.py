@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +10,7 @@ from pinwarp.core.landmarks import Side
 from pinwarp.io import session_file
 from pinwarp.io.mesh_search import find_mesh
 from pinwarp.io.meshes import MeshFile
-from pinwarp.io.osim.bone import read_any_mesh, split_bone_path
+from pinwarp.io.osim.bone import is_mesh_there, read_any_mesh
 from pinwarp.io.session_file import MeshReference
 from pinwarp.session.session import Session, as_seen, from_record, to_record
 from pinwarp.session.warp.rested import with_rest
@@ -120,18 +119,13 @@ def with_meshes(
         reference = session.mesh_file(side)
         if not isinstance(reference, MeshReference):
             continue
-        if not _is_there(reference.path) and folder is not None:
+        if not is_mesh_there(reference.path) and folder is not None:
             found = find_mesh(reference, [folder])
             if found is not None and found.is_same:
                 reference = replace(reference, path=found.path)
-        if _is_there(reference.path):
+        if is_mesh_there(reference.path):
             session = session.with_mesh(side, _read(reference))
     return session
-
-
-def _is_there(path: Path) -> bool:
-    named = split_bone_path(path)
-    return os.path.isfile(path if named is None else named[0])
 
 
 def _read(reference: MeshReference) -> MeshFile:
