@@ -297,6 +297,13 @@ def test_a_place_that_nothing_moves_stays_constant():
         ),
         (
             {
+                "functions": [spline(0, 1, 2, 4), constant(0), constant(0)],
+                "coordinates": ("knee hip", "", ""),
+            },
+            "depends on hip and knee",
+        ),
+        (
+            {
                 "functions": [
                     spline(0, 1, 2, 4),
                     CoordinateFunction(FunctionKind.LINEAR, [0, 1], [0, 1]),

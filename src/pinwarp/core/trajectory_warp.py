@@ -71,7 +71,7 @@ def carried_way(
     axes
         (3, 3) whose columns are the directions.
     functions, coordinates
-        One for each axis.
+        One for each axis; a function of several coordinates has their names between blanks.
 
     Raises
     ------
@@ -93,8 +93,9 @@ def carried_way(
     varying = [i for i in range(3) if not functions[i].is_constant]
     used = {coordinates[i] for i in varying}
     kinds = {functions[i].kind for i in varying}
-    if len(used) > 1:
-        raise NotCarried(f"it depends on {' and '.join(sorted(used))}")
+    names = sorted({name for words in used for name in words.split()})
+    if len(names) > 1:
+        raise NotCarried(f"it depends on {' and '.join(names)}")
     if len(kinds) > 1:
         raise NotCarried("its functions are of several kinds")
 

@@ -149,6 +149,7 @@ def test_what_is_no_model_that_can_be_warped_is_refused(leg, changes, words):
     [
         ([("<location>0.03 -0.37 0<", "<location>0.03 -0.37<")], "rf-P2: location has 2 numbers"),
         ([("<location>0.03 -0.37 0<", "<location>0.03 nan 0<")], "rf-P2: location is '0.03 nan 0'"),
+        ([("<location>0.03 -0.37 0<", "<location>0.03 1_0 0<")], "rf-P2: location is '0.03 1_0"),
         ([("<radius>0.022<", "<radius>0<")], "knee_wrap: Its size is not above 0"),
         (
             [("<orientation>0.05 0.1 0<", "<orientation>one 0 0<")],

@@ -196,6 +196,8 @@ class _Reader:
     def __init__(self, data: bytes, parser: expat.XMLParserType) -> None:
         self._data, self._parser = data, parser
         self._open: list[Element] = []
+        # Put together in the end: a text in a thousand pieces would be copied a thousand times.
+        self._texts: list[list[str]] = []
         self._number = 0
         self.root: Element | None = None
         parser.StartDoctypeDeclHandler = self._refuse_type
@@ -216,9 +218,11 @@ class _Reader:
         else:
             parent.children.append(element)
         self._open.append(element)
+        self._texts.append([])
 
     def leave(self, _tag: str) -> None:
         element = self._open.pop()
+        element.text = "".join(self._texts.pop())
         if self._data[element.inner - 2 : element.inner] == b"/>":
             element.close = element.end = element.inner
             return
@@ -226,8 +230,8 @@ class _Reader:
         element.end = self._data.index(b">", element.close) + 1
 
     def hear(self, text: str) -> None:
-        if self._open:
-            self._open[-1].text += text
+        if self._texts:
+            self._texts[-1].append(text)
 
     def _refuse_type(self, *_declared: object) -> None:
         words = "it declares a document type, which no model needs"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import posixpath
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.words import some_of
-from pinwarp.io.csv_cells import shortened
+from pinwarp.io.csv_cells import number_of, shortened
 from pinwarp.io.osim.component_paths import canonical, paths_below, segment_of
 from pinwarp.io.osim.document import Document, Element
 
@@ -150,13 +149,11 @@ class OsimModel:
         """
         words = self.text(element, tag).replace("(", " ").replace(")", " ").split()
         try:
-            found = np.array([float(word) for word in words], dtype=np.float64)
+            return np.array([number_of(word, ",") for word in words], dtype=np.float64)
         except ValueError:
-            found = np.array([math.nan])
-        if not np.isfinite(found).all():
             said = shortened(self.text(element, tag))
-            raise self.error(element, f"{tag} is {said} and not finite numbers. Correct it.")
-        return found
+            problem = f"{tag} is {said} and not finite numbers. Correct it."
+            raise self.error(element, problem) from None
 
     def socket(self, element: Element, name: str) -> str:
         """Return the path that a socket of a component leads to; empty where it says nothing.

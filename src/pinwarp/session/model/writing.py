@@ -15,6 +15,7 @@ from pinwarp.io.atomic import write_atomically
 from pinwarp.io.meshes import write_mesh
 from pinwarp.io.model_report import write_report_csv
 from pinwarp.io.osim.body_parts import body_parts
+from pinwarp.io.osim.geometry import find_mesh_file
 from pinwarp.io.osim.model import OsimModel
 from pinwarp.io.osim.reading import model_of
 from pinwarp.session.model.warped import WarpedModel
@@ -47,7 +48,10 @@ def outputs_of(warped: WarpedModel, path: str | Path) -> tuple[Path, ...]:
     outputs = (place, place.with_name(f"{place.stem}_report.csv"), *meshes)
     study = warped.study
     sessions = [each.path for each in study.bodies if each.path is not None]
-    refuse_to_replace([study.model.path, *sessions], outputs)
+    elements = [study.model.elements[key] for key in warped.meshes]
+    drawn = [find_mesh_file(study.model, element, study.folders) for element in elements]
+    read = [study.model.path, *sessions, *(file for file in drawn if file is not None)]
+    refuse_to_replace(read, outputs)
     return outputs
 
 
