@@ -22,6 +22,7 @@ from pinwarp.core.placement import Placement, frame_of_stations
 from pinwarp.io.osim.document import Element
 from pinwarp.io.osim.kept_parts import kept_parts
 from pinwarp.io.osim.model import OFFSETS, STATION_FRAME, OsimModel
+from pinwarp.io.osim.sockets import owner_of
 from pinwarp.io.osim.trajectories import joint_way, moving_point
 
 POINT_KINDS = {
@@ -76,7 +77,7 @@ class _Gatherer:
         self._elements = model.objects
         self._wraps = {}
         for element in self._elements:
-            if element.tag in _WRAPS and self._is_on(model.owner_of(element)):
+            if element.tag in _WRAPS and self._is_on(owner_of(model, element)):
                 self._wraps[element.name] = model.path_of(element)
 
     def gathered(self, meshes: Sequence[MeshPart]) -> BodyParts:
@@ -185,7 +186,7 @@ class _Gatherer:
     def _wrap_parts(self) -> Iterator[WrapPart]:
         model = self._model
         for element in self._elements:
-            if element.tag not in _WRAPS or not self._is_on(model.owner_of(element)):
+            if element.tag not in _WRAPS or not self._is_on(owner_of(model, element)):
                 continue
             shape = WrapShape(element.tag)
             match shape:
@@ -203,7 +204,7 @@ class _Gatherer:
             yield WrapPart(
                 *self._about(element, f"wrap {shape.value.removeprefix('Wrap').lower()}"),
                 shape=shape,
-                frame=model.owner_of(element),
+                frame=owner_of(model, element),
                 placement=Placement.from_angles(angles, origin),
                 size=size,
             )

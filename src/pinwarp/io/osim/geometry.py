@@ -15,6 +15,7 @@ from pinwarp.core.placement import Placement
 from pinwarp.io.meshes import MeshFile, read_mesh
 from pinwarp.io.osim.document import Element
 from pinwarp.io.osim.model import OsimModel
+from pinwarp.io.osim.sockets import attached_to
 
 FOLDER = "Geometry"
 
@@ -50,15 +51,8 @@ def mesh_elements(model: OsimModel, body: str) -> tuple[Element, ...]:
         for element in model.objects
         if element.tag == "Mesh"
         and model.text(element, "mesh_file")
-        and model.body_of(mesh_frame(model, element)) == body
+        and model.body_of(attached_to(model, element)) == body
     )
-
-
-def mesh_frame(model: OsimModel, element: Element) -> str:
-    """Return the frame that something is attached to: that of its socket, or what it is in."""
-    if model.text(element, "socket_frame"):
-        return model.frame_of(element, "socket_frame")
-    return model.owner_of(element)
 
 
 def find_mesh_file(model: OsimModel, element: Element, folders: Sequence[Path] = ()) -> Path | None:
@@ -121,7 +115,7 @@ def read_meshes(model: OsimModel, body: str, folders: Sequence[Path] = ()) -> tu
             model.path_of(element),
             "mesh",
             element.line,
-            mesh_frame(model, element),
+            attached_to(model, element),
             file.mesh,
             model.numbers(element, "scale_factors", (1, 1, 1)),
         )

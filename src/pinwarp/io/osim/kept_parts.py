@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 from pinwarp.core.model_parts import KeptPart
 from pinwarp.io.osim.document import Element
-from pinwarp.io.osim.geometry import mesh_frame
-from pinwarp.io.osim.model import OFFSETS, STATION_FRAME, OsimModel, is_frame_socket
+from pinwarp.io.osim.model import OFFSETS, STATION_FRAME, OsimModel
+from pinwarp.io.osim.sockets import attached_to, is_frame_socket, owner_of
 
 LENGTHS = ("optimal_fiber_length", "tendon_slack_length", "resting_length", "rest_length")
 """Properties of forces along a path that a change of the path's length asks to change, too."""
@@ -57,10 +57,10 @@ def _of(model: OsimModel, body: str, element: Element) -> Iterator[tuple[str, st
             flag = "Its length is a function of coordinates: fit it anew to the warped model."
             yield kind, "its functions are the generic model's", flag
     elif tag.startswith("Wrap") and not tag.endswith("Set"):
-        if model.body_of(model.owner_of(element)) == body:
+        if model.body_of(owner_of(model, element)) == body:
             yield kind, "there is no rule for this shape", _BY_HAND
     elif element.parent is not None and element.parent.tag == "attached_geometry":
-        if tag != "Mesh" and model.body_of(mesh_frame(model, element)) == body:
+        if tag != "Mesh" and model.body_of(attached_to(model, element)) == body:
             yield "drawn shape", f"a {kind} moves with its frame and keeps its size", ""
     elif element.child("GeometryPath") is not None:
         lengths = [f"{x} {model.text(element, x)}" for x in LENGTHS if element.child(x) is not None]

@@ -225,21 +225,6 @@ class OsimModel:
             self.components[frame], "It stands on itself, or too deep in other frames. Correct it."
         )
 
-    def owner_of(self, element: Element) -> str:
-        """Return the path of the frame that an element is written in.
-
-        Raises
-        ------
-        FileFormatError
-            When it is in none.
-        """
-        at = element.parent
-        while at is not None:
-            if at.tag in (*BASES, *OFFSETS, STATION_FRAME):
-                return self.path_of(at)
-            at = at.parent
-        raise self.error(element, "It is attached to no frame. Correct it.")
-
     def body(self, name: str) -> str:
         """Return the path of a body that is given by its name or its path.
 
@@ -255,14 +240,3 @@ class OsimModel:
         raise FileFormatError(
             self.path, f"There is no body {shortened(name)} in it. It has {known}."
         )
-
-
-def is_frame_socket(tag: str) -> bool:
-    """Whether a property connects to a frame.
-
-    Examples
-    --------
-    >>> is_frame_socket("socket_parent_frame"), is_frame_socket("socket_coordinate")
-    (True, False)
-    """
-    return tag.startswith("socket_") and (tag == "socket_parent" or "frame" in tag or "body" in tag)

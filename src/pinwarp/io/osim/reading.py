@@ -7,7 +7,8 @@ from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError
 from pinwarp.io.osim.document import Element, read_document
-from pinwarp.io.osim.model import OsimModel, is_frame_socket
+from pinwarp.io.osim.model import OsimModel
+from pinwarp.io.osim.sockets import is_frame_socket
 from pinwarp.io.reading import read_content
 
 LARGEST = 256 << 20

@@ -11,6 +11,7 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.core.model_warp import WarpedBody
 from pinwarp.io.osim.functions import put_function
 from pinwarp.io.osim.model import OsimModel
+from pinwarp.io.osim.sockets import owner_of
 from pinwarp.io.osim.splicing import Splicer
 
 _NOT_IN_A_NAME = '\\/:*?"<>|%&'
@@ -94,7 +95,7 @@ def mesh_names(model: OsimModel, meshes: Mapping[int, Mesh], folder: str) -> dic
     taken: set[str] = set()
     for key in sorted(meshes):
         element = model.elements[key]
-        body = model.body_of(model.owner_of(element)).rsplit("/", 1)[-1]
+        body = model.body_of(owner_of(model, element)).rsplit("/", 1)[-1]
         old = PurePosixPath(model.text(element, "mesh_file").replace("\\", "/")).stem
         stem = "".join("_" if x in _NOT_IN_A_NAME or ord(x) < 32 else x for x in f"{body}_{old}")
         name, number = stem, 2
