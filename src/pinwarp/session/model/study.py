@@ -132,9 +132,7 @@ def study_of(
         else:
             path = Path(os.path.abspath(given))
             bodies.append(StudyBody(body, read_session(path, meshes=()), turns, path=path))
-    return ModelStudy(
-        model, tuple(bodies), frozenset(turn), frozenset(keep), tuple(map(Path, folders))
-    )
+    return ModelStudy(model, tuple(bodies), frozenset(turn), frozenset(keep), _absolute(folders))
 
 
 def read_study(path: str | Path, *, folders: Iterable[str | Path] = ()) -> ModelStudy:
@@ -176,9 +174,14 @@ def read_study(path: str | Path, *, folders: Iterable[str | Path] = ()) -> Model
         ),
         frozenset(record.turn),
         frozenset(record.keep),
-        tuple(map(Path, folders)),
+        _absolute(folders),
         (note,) if changed else (),
     )
+
+
+def _absolute(folders: Iterable[str | Path]) -> tuple[Path, ...]:
+    # Workers of a cohort look from another folder.
+    return tuple(Path(os.path.abspath(folder)) for folder in folders)
 
 
 def write_study(path: str | Path, study: ModelStudy) -> None:
