@@ -267,3 +267,22 @@ def test_two_meshes_of_one_file_get_two_names(tmp_path):
     new, _ = warped_copy(path, ["thigh"])
     names = [mesh.file.path.name for mesh in read_meshes(read_model(new), "/bodyset/thigh")]
     assert names == ["thigh_thigh.vtp", "thigh_thigh_2.vtp"]
+
+
+def test_a_model_of_odd_elements_saved_by_opensim_has_a_row_for_each(tmp_path):
+    path = copied_model("leg_odd_elements", tmp_path)
+    _, (warped,) = warped_copy(path, ["thigh"])
+    found = {(row.kind, row.path): row for row in warped.rows}
+    assert len(found) == len(warped.rows)
+    flagged = {kind for (kind, _), row in found.items() if row.flag and not row.is_warped}
+    assert flagged == {
+        *("bushing force", "contact sphere", "function based path", "imu", "joint"),
+        *("point actuator", "point to point spring", "torque actuator", "weld constraint"),
+        "wrap torus",
+    }
+    # Frames that a bushing or a constraint has of its own are carried like any other.
+    frames = {path for kind, path in found if kind == "offset frame"}
+    assert {"/forceset/bush/thigh_offset", "/constraintset/weld/thigh_offset"} <= frames
+    lengths = {path: row.words for (kind, path), row in found.items() if kind == "muscle lengths"}
+    assert lengths["/forceset/lig"] == "resting_length 0.1 is the generic muscle's"
+    assert "/forceset/spring" in lengths

@@ -63,9 +63,14 @@ def _of(model: OsimModel, body: str, element: Element) -> Iterator[tuple[str, st
         if tag != "Mesh" and model.body_of(attached_to(model, element)) == body:
             yield "drawn shape", f"a {kind} moves with its frame and keeps its size", ""
     elif element.child("GeometryPath") is not None:
-        lengths = [f"{x} {model.text(element, x)}" for x in LENGTHS if element.child(x) is not None]
+        lengths = [
+            f"{name} {model.numbers(element, name, 0.0)[0]:g}"
+            for name in LENGTHS
+            if element.child(name) is not None
+        ]
         if lengths and body in _bodies_passed(model, element):
-            yield "muscle lengths", f"{' and '.join(lengths)} are the generic muscle's", ""
+            are = "is" if len(lengths) == 1 else "are"
+            yield "muscle lengths", f"{' and '.join(lengths)} {are} the generic muscle's", ""
     elif tag != "Mesh" and body in _bodies_named(model, element):
         yield kind, "there is no rule for it", _BY_HAND
 
