@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -167,3 +169,22 @@ def test_what_else_warps_a_session_warps_one_on_a_bone(leg, tmp_path, pinwarp_co
     pinwarp_command("batch", tmp_path / "study.csv", "--session", path, "-o", out, "--jobs", 1)
     many = read_mesh(out / "anna_warped.vtp").mesh
     np.testing.assert_allclose(many.vertices, expected.vertices, atol=1e-12)
+
+
+def test_opensim_adds_its_figures_to_what_a_program_reads(leg, thigh, tmp_path):
+    pytest.importorskip("opensim")
+    command = (sys.executable, "-m", "pinwarp", "model", leg, "--body", f"thigh={thigh}")
+    told = subprocess.run(
+        (*map(str, command), "--dry-run", "--json", "--check", "--scale-lengths"),
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=tmp_path,
+    )
+    found = json.loads(told.stdout)
+    assert {muscle["path"] for muscle in found["opensim"]["muscles"]} == {
+        *("/forceset/rf", "/forceset/ham", "/forceset/add"),
+    }
+    rows = {row["path"]: row for row in found["elements"]}
+    assert rows["/forceset/rf"]["outcome"] == "warped"
+    assert os.listdir(tmp_path) == ["leg"]

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -141,7 +140,8 @@ def check_in_opensim(
         When OpenSim is not installed, or does not load one of the models; the message says why.
     """
     opensim = _opensim()
-    with tempfile.TemporaryDirectory() as folder, _quiet(opensim):
+    _silence(opensim)
+    with tempfile.TemporaryDirectory() as folder:
         new = Path(folder, "warped.osim")
         write_model(warped, new)
         before = _Loaded(opensim, warped.study.model.path)
@@ -238,13 +238,10 @@ def _opensim() -> Any:
     return opensim
 
 
-@contextmanager
-def _quiet(opensim: Any) -> Iterator[None]:
-    """Keep OpenSim from talking, and from leaving opensim.log where the command was run."""
-    level = opensim.Logger.getLevelString()
+def _silence(opensim: Any) -> None:
+    """Keep OpenSim from talking, and from leaving opensim.log where the command was run.
+
+    For good: to be given its voice back it says so, in the middle of what a program reads.
+    """
     opensim.Logger.removeFileSink()
     opensim.Logger.setLevelString("Off")
-    try:
-        yield
-    finally:
-        opensim.Logger.setLevelString(level)
