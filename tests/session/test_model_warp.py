@@ -27,6 +27,7 @@ from pinwarp.io.mesh_reference import MeshReference
 from pinwarp.io.meshes import read_mesh
 from pinwarp.io.osim.bone import bone_of, bone_path, read_bone
 from pinwarp.io.osim.reading import read_model
+from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.session.keeping.files import read_session
 from pinwarp.session.model.body_warp import body_warp
 from pinwarp.session.model.study import (
@@ -39,6 +40,7 @@ from pinwarp.session.model.study import (
 from pinwarp.session.model.warped import warped_model
 from pinwarp.session.model.writing import write_model
 from pinwarp.session.session import Session
+from pinwarp.session.warp.refined import inputs_of
 from pinwarp.session.warp.solved import solved
 
 
@@ -380,3 +382,38 @@ def test_a_muscle_that_spans_a_warped_body_without_touching_it_is_named_too(leg)
         assert "/forceset/rf" in {part.path for part in parts.kept}
     shank = bone_of(model, "/bodyset/shank").parts
     assert "/forceset/add" not in {part.path for part in shank.kept}
+
+
+def refined(session: Session, places: np.ndarray) -> Session:
+    """Return a session as it is when it was refined: fitted to further places of its surface."""
+    landmarks = session.landmarks
+    fitted = paired(places, count=60)
+    every = (*landmarks, *fitted[len(landmarks) :])
+    both = [[each.position(side) for each in every] for side in Side]
+    record = RefinementRecord(*map(tuple, both), 0.01, inputs=inputs_of(session))
+    return replace(session, refinement=record)
+
+
+def test_a_refined_warp_is_carried_through_the_frame_of_its_mesh(tmp_path):
+    bone = bone_in(copied_model("leg_nested_frames", tmp_path))
+    ((_, at),) = bone.meshes
+    plain = raw_session(tmp_path, count=8)
+    session = refined(plain, plain.mesh(Side.SOURCE).vertices)
+    warp = body_warp(session, bone)
+    # What the session itself makes of a place, in the frame of the mesh.
+    places = bone.mesh.vertices
+    itself = solved(session).part(Components.WITHOUT_POSE)
+    np.testing.assert_allclose(warp.warp(places), at.out(itself.evaluate(at.into(places))))
+    assert agree(warp, body_warp(plain, bone), places) > 1e-4
+    assert warp.deviation is None, "what was fitted to a surface says nothing of its error"
+
+
+def test_a_refined_session_on_a_file_that_is_drawn_stretched_is_refused(tmp_path):
+    path = edited_model(
+        copied_model("leg", tmp_path),
+        ("<mesh_file>thigh.vtp", "<scale_factors>1 1.1 1</scale_factors><mesh_file>thigh.vtp"),
+    )
+    plain = raw_session(tmp_path, count=8)
+    session = refined(plain, plain.mesh(Side.SOURCE).vertices)
+    with pytest.raises(PinwarpError, match="Open the body itself as the source: thigh of leg"):
+        body_warp(session, bone_in(path))
