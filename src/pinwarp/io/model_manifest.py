@@ -10,8 +10,9 @@ from pathlib import Path
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.names import visible
 from pinwarp.io.csv_cells import as_sentence, formula_unquoted, shortened
-from pinwarp.io.csv_text import Row, lines_of, read_text, refuse_binary, rows_of
+from pinwarp.io.csv_text import Row, rows_of
 from pinwarp.io.manifest import checked_name
+from pinwarp.io.text import lines_of, read_text, refuse_binary
 
 MESH = "_mesh"
 """What the column of a body's scan ends in, after the name of the body."""

@@ -10,7 +10,8 @@ from pathlib import Path
 from pinwarp.core.errors import FileFormatError, NewerFileError
 from pinwarp.io.atomic import write_atomically
 from pinwarp.io.csv_cells import YES_NO, as_sentence, formula_unquoted, shortened
-from pinwarp.io.csv_text import Row, csv_line, lines_of, read_text, refuse_binary, rows_of
+from pinwarp.io.csv_text import Row, csv_line, rows_of
+from pinwarp.io.text import lines_of, read_text, refuse_binary
 
 SUFFIX = ".pinwarp-model.csv"
 VERSION = 1
