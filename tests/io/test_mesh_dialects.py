@@ -386,6 +386,36 @@ def test_a_few_vertices_that_are_not_finite_are_dropped_with_their_faces(tmp_pat
     )
 
 
+def test_no_number_as_microsoft_writes_it_and_exponents_of_fortran_are_read(tmp_path):
+    # A fan of many triangles, one corner of which is broken.
+    places = "".join(f"1.0D+00 {n}.5d0 {n * n}\n" for n in range(200)) + "-1.#IND nan(ind) 1.#INF\n"
+    faces = "".join(f"3 0 {n} {n + 1}\n" for n in range(1, 200))
+    header = PLY_HEADER.replace("vertex 4", "vertex 201").replace("face 4", "face 199")
+    table = " ".join(f"{row}" for row in places.splitlines())
+    texts = {
+        "a.ply": header + places + faces,
+        "a.off": f"OFF\n201 199\n{places}{faces}",
+        "a.obj": "".join(f"v {row}\n" for row in places.splitlines())
+        + "".join(f"f 1 {n + 1} {n + 2}\n" for n in range(1, 200)),
+        "a.vtk": "# vtk DataFile Version 3.0\na\nASCII\nDATASET POLYDATA\n"
+        f"POINTS 201 double\n{table}\nPOLYGONS 199 796\n{faces}",
+    }
+    for name, text in texts.items():
+        found = read(tmp_path, name, text)
+        assert found.mesh.vertices[3].tolist() == [1, 3.5, 9], name
+        assert found.notes == ("1 vertex without a finite position dropped, with 1 face on them.",)
+
+
+def test_lists_of_a_ply_vertex_behind_its_places_are_passed_over(tmp_path):
+    header = PLY_HEADER.replace(
+        "property float z\n", "property float z\nproperty list uchar int near\n"
+    )
+    body = "".join(f"{x} {y} {z} 2 7 8\n" for x, y, z in PLACES)
+    found = read(tmp_path, "a.ply", header + body + rows(TETRAHEDRON, "3 "))
+    assert is_tetrahedron(found)
+    assert found.notes == ()
+
+
 def test_more_than_a_few_vertices_that_are_not_finite_are_refused(tmp_path):
     ball = pv.Sphere(theta_resolution=20, phi_resolution=20)
     ball.points[::40, 1] = np.nan

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -12,14 +13,13 @@ import numpy as np
 from pinwarp.core.errors import FileFormatError, MeshError
 from pinwarp.core.mesh import Mesh
 from pinwarp.io.atomic import atomic_path
-from pinwarp.io.mesh_formats.gltf import read_gltf, write_glb, write_gltf
-from pinwarp.io.mesh_formats.kinds import foreign_in, foreign_named, kind_in
+from pinwarp.io.mesh_formats.foreign import foreign_in, foreign_named
+from pinwarp.io.mesh_formats.kinds import kind_in
 from pinwarp.io.mesh_formats.obj import read_obj, write_obj
 from pinwarp.io.mesh_formats.off import read_off, write_off
 from pinwarp.io.mesh_formats.ply import read_ply, write_ply
 from pinwarp.io.mesh_formats.stl import read_stl, write_stl
 from pinwarp.io.mesh_formats.surface import BrokenMeshError, Report, Surface
-from pinwarp.io.mesh_formats.threemf import read_3mf, write_3mf
 from pinwarp.io.mesh_formats.triangles import mesh_of
 from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
 from pinwarp.io.mesh_formats.vtk_legacy import read_legacy_vtk
@@ -44,6 +44,14 @@ SCALARS_SUFFIXES = (".ply", ".vtp", ".vtk", ".vtu")
 
 _Read = Callable[[bytes, Report], Surface]
 
+
+def _read_3mf(data: bytes, report: Report) -> Surface:
+    # Loaded only for files that need it, as all that is rare: the program starts sooner.
+    from pinwarp.io.mesh_formats.threemf import read_3mf
+
+    return read_3mf(data, report)
+
+
 _READERS: dict[str, _Read] = {
     ".stl": read_stl,
     ".ply": read_ply,
@@ -52,16 +60,13 @@ _READERS: dict[str, _Read] = {
     ".vtk": read_legacy_vtk,
     ".vtu": read_vtk_xml,
     ".off": read_off,
-    ".3mf": read_3mf,
+    ".3mf": _read_3mf,
 }
 
 
-def _write_by_vtk(name: str) -> Callable[[Path, Mesh, VertexData], None]:
+def _write_by(module: str, name: str) -> Callable[[Path, Mesh, VertexData], None]:
     def write(path: Path, mesh: Mesh, extras: VertexData) -> None:
-        # VTK is loaded only for what needs it.
-        from pinwarp.io.mesh_formats import polydata
-
-        getattr(polydata, name)(path, mesh, extras)
+        getattr(import_module(f"pinwarp.io.mesh_formats.{module}"), name)(path, mesh, extras)
 
     return write
 
@@ -70,13 +75,13 @@ _WRITERS: dict[str, Callable[[Path, Mesh, VertexData], None]] = {
     ".stl": write_stl,
     ".ply": write_ply,
     ".obj": write_obj,
-    ".vtp": _write_by_vtk("write_vtp"),
-    ".vtk": _write_by_vtk("write_legacy_vtk"),
-    ".vtu": _write_by_vtk("write_vtu"),
+    ".vtp": _write_by("polydata", "write_vtp"),
+    ".vtk": _write_by("polydata", "write_legacy_vtk"),
+    ".vtu": _write_by("polydata", "write_vtu"),
     ".off": write_off,
-    ".glb": write_glb,
-    ".gltf": write_gltf,
-    ".3mf": write_3mf,
+    ".glb": _write_by("gltf", "write_glb"),
+    ".gltf": _write_by("gltf", "write_gltf"),
+    ".3mf": _write_by("threemf", "write_3mf"),
 }
 
 
@@ -219,6 +224,8 @@ def _reader(content: Content, found: str | None) -> tuple[_Read, tuple[str, ...]
     """Return what reads a file, and what is to be said of its name."""
     suffix = _suffix(content.path)
     if (found or suffix) in (".glb", ".gltf"):
+        from pinwarp.io.mesh_formats.gltf import read_gltf
+
         read_scene = partial(read_gltf, beside=partial(_beside, content.path))
         return read_scene, _misnamed(suffix, found, (".glb", ".gltf"))
     if (found or suffix) not in _READERS:

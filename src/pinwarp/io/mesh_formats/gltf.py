@@ -34,7 +34,7 @@ from pinwarp.io.mesh_formats.surface import (
 from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
 from pinwarp.io.text import decoded
 
-MAGIC = b"glTF"
+_MAGIC = b"glTF"
 _JSON, _BINARY = 0x4E4F534A, 0x004E4942
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _EMBEDDED = "data:application/octet-stream;base64,"
@@ -75,7 +75,7 @@ def read_gltf(data: bytes, report: Report, beside: Beside) -> Surface:
     >>> read_gltf(content, lambda share: None, lambda name: b"").points.shape
     (3, 3)
     """
-    text, binary = _chunks(data) if data.startswith(MAGIC) else (data, None)
+    text, binary = _chunks(data) if data.startswith(_MAGIC) else (data, None)
     try:
         scene, _ = read_json(decoded(text))
     except (ValueError, RecursionError):
@@ -248,7 +248,7 @@ def write_glb(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     # Each part ends at a multiple of four.
     text += b" " * (-len(text) % 4)
     length = 12 + 8 + len(text) + 8 + len(binary)
-    head = MAGIC + struct.pack("<II", 2, length)
+    head = _MAGIC + struct.pack("<II", 2, length)
     with path.open("wb") as file:
         file.write(head + struct.pack("<II", len(text), _JSON) + text)
         file.write(struct.pack("<II", len(binary), _BINARY) + binary)

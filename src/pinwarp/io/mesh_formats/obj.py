@@ -17,11 +17,13 @@ from numpy.typing import NDArray
 
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.words import counted
+from pinwarp.io.mesh_formats.numbers import mended
 from pinwarp.io.mesh_formats.surface import BrokenMeshError, Report, Surface
 from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
 from pinwarp.io.text import Lines, narrow, stretches_of
 
-_VERTEX = re.compile(rb"^[ \t]*v[ \t]+([^\n#]*)", re.M | re.I)
+# Comments come behind the three words that are taken.
+_VERTEX = re.compile(rb"^[ \t]*v[ \t]+([^\n]*)", re.M | re.I)
 _FACE = re.compile(rb"^[ \t]*fo?[ \t]+([^\n#]*)", re.M | re.I)
 _LOOSE = re.compile(rb"^[ \t]*[lp][ \t]", re.M | re.I)
 _CONTINUED = re.compile(rb"\\[ \t]*(?:\r\n|\n|\r)")
@@ -81,7 +83,11 @@ def read_obj(data: bytes, report: Report) -> Surface:
 
 def _vertices(chunk: bytes) -> NDArray[np.float64]:
     rows = [row.split(None, 3)[:3] for row in _VERTEX.findall(chunk)]
-    return np.array(rows, dtype=np.float64).reshape(len(rows), 3)
+    try:
+        return np.array(rows, dtype=np.float64).reshape(len(rows), 3)
+    except ValueError:
+        rows = [mended(b" ".join(row)).split() for row in rows]
+        return np.array(rows, dtype=np.float64).reshape(len(rows), 3)
 
 
 def _faces(chunk: bytes, vertices_before: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -58,7 +58,7 @@ def read_off(data: bytes, report: Report) -> Surface:
     # The word itself may be left out.
     begin = head.end() if head else 0
     first_line = max(1, len(lines_of(data[:begin].decode("latin-1"))))
-    rows = TextRows(data, begin, first_line, report, comment=b"#")
+    rows = TextRows(data, begin, first_line, report, has_comments=True)
     points_and_faces = rows.table(1, 2)[0]
     if not all(count.is_integer() and 0 <= count < 2**40 for count in points_and_faces.tolist()):
         raise BrokenMeshError(

@@ -7,7 +7,7 @@ numbers that are not whole become others, and text takes three times the memory.
 
 from __future__ import annotations
 
-from itertools import chain
+from itertools import chain, takewhile
 from pathlib import Path
 
 import numpy as np
@@ -113,12 +113,13 @@ class _Text:
         self._notes: list[str] = []
 
     def points(self, element: Element) -> NDArray[np.float64]:
-        names = [p.name for p in element.properties]
-        if any(p.length_kind for p in element.properties) or not {"x", "y", "z"} <= {*names}:
+        names = [p.name for p in takewhile(lambda p: not p.length_kind, element.properties)]
+        if not {"x", "y", "z"} <= {*names}:
             raise _no_places()
         axes = [names.index(axis) for axis in "xyz"]
         table = self._rows.table(element.rows, max(axes) + 1, row_width=len(names))
-        self._tell_longer(element)
+        if len(names) == len(element.properties):
+            self._tell_longer(element)
         return table[:, axes]
 
     def polygons(self, element: Element) -> _Polygons:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.words import counted
+from pinwarp.io.mesh_formats.numbers import mended
 from pinwarp.io.mesh_formats.surface import (
     BrokenMeshError,
     Report,
@@ -179,9 +180,7 @@ def _numbers(found: list[tuple[bytes, ...]]) -> NDArray[np.float64]:
     try:
         return np.array(found, dtype=np.float64)
     except ValueError:
-        # Fortran writes the exponent of a double as D.
-        fortran = [[word.replace(b"d", b"e") for word in words] for words in found]
-        return np.array(fortran, dtype=np.float64)
+        return np.array([[mended(word) for word in words] for words in found], dtype=np.float64)
 
 
 def _first_bad_vertex(text: bytes) -> int:

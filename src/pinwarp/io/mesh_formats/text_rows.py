@@ -6,14 +6,19 @@ taken for something else from there on.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pinwarp.io.mesh_formats.numbers import mended
 from pinwarp.io.mesh_formats.surface import BrokenMeshError, Report
 from pinwarp.io.text import Lines, stretches_of
+
+# Within a word it is part of what Microsoft's libraries write for no number.
+_COMMENT = re.compile(rb"(?:^|(?<=\s))#[^\n]*", re.M)
 
 _Row = list[bytes]
 
@@ -29,8 +34,8 @@ class TextRows:
         Where the rows begin, and the number of that line.
     report
         Told the share that is behind.
-    comment
-        What comments begin with; a file may have none.
+    has_comments
+        Whether what follows a ``#`` is for people.
 
     Examples
     --------
@@ -40,11 +45,17 @@ class TextRows:
     """
 
     def __init__(
-        self, data: bytes, begin: int, first_line: int, report: Report, comment: bytes = b""
+        self,
+        data: bytes,
+        begin: int,
+        first_line: int,
+        report: Report,
+        *,
+        has_comments: bool = False,
     ) -> None:
         self._stretches = stretches_of(data, begin, first_line)
         self._report = report
-        self._comment = comment
+        self._has_comments = has_comments
         self._rows: list[_Row] = []
         self._numbers: list[int] = []
         self._last = first_line
@@ -176,9 +187,10 @@ class TextRows:
             yield rows, numbers
 
     def _split(self, lines: Lines) -> None:
-        texts = lines.data.split(b"\n")
-        if self._comment and self._comment in lines.data:
-            texts = [text.partition(self._comment)[0] for text in texts]
+        data = lines.data
+        if self._has_comments and b"#" in data:
+            data = _COMMENT.sub(b"", data)
+        texts = data.split(b"\n")
         self._rows = [text.split() for text in texts]
         self._numbers = list(range(lines.first, lines.first + len(texts)))
         if not all(self._rows):
@@ -193,10 +205,14 @@ def _floats(
 ) -> NDArray[np.float64]:
     try:
         return np.array(words, dtype=np.float64)
+    except ValueError:
+        words = [mended(word) for word in words]
+    try:
+        return np.array(words, dtype=np.float64)
     except ValueError as error:
         for row, number in zip(rows, numbers, strict=True):
             try:
-                np.array(row[:width], dtype=np.float64)
+                np.array([mended(word) for word in row[:width]], dtype=np.float64)
             except ValueError:
                 raise BrokenMeshError(
                     f"Expected are {width} numbers. Repair this line or export the mesh again.",
