@@ -116,6 +116,7 @@ def test_the_line_that_is_told_is_that_of_the_file_whatever_its_line_ends(tmp_pa
         f"solid a\n{''.join(map(facet, TETRAHEDRON[:2]))}endsolid a\n"
         f"solid b\n{''.join(map(facet, TETRAHEDRON[2:]))}endsolid b\n",
         f"{WHOLE['.stl']}\n# written by hand\n",
+        WHOLE[".stl"] + 20 * "\0",
     ],
     ids=[
         "end facet",
@@ -127,6 +128,7 @@ def test_the_line_that_is_told_is_that_of_the_file_whatever_its_line_ends(tmp_pa
         "exponents of Fortran",
         "two solids",
         "a comment last",
+        "zeros last",
     ],
 )
 def test_ascii_stl_of_any_program_is_read(tmp_path, text):
@@ -256,6 +258,10 @@ def test_a_backslash_goes_on_in_the_next_line_also_with_blanks_behind_it(
 ):
     text = WHOLE[".obj"].replace("f 1 2 3\n", f"f 1 \\{blanks}\n 2 \\{blanks}\n3\n")
     assert is_tetrahedron(read(tmp_path, "a.obj", text.replace("\n", line_end)))
+
+
+def test_a_path_that_ends_in_a_backslash_takes_no_vertex_away(tmp_path):
+    assert is_tetrahedron(read(tmp_path, "a.obj", "mtllib C:\\a\\\n" + WHOLE[".obj"]))
 
 
 # Polygons
@@ -400,6 +406,15 @@ def test_no_number_as_microsoft_writes_it_and_exponents_of_fortran_are_read(tmp_
         "a.vtk": "# vtk DataFile Version 3.0\na\nASCII\nDATASET POLYDATA\n"
         f"POINTS 201 double\n{table}\nPOLYGONS 199 796\n{faces}",
     }
+    numbers = " ".join(str(n) for face in faces.splitlines() for n in face.split()[1:])
+    ends = " ".join(str(3 * n) for n in range(1, 200))
+    texts["a.vtp"] = (
+        '<VTKFile type="PolyData"><PolyData><Piece NumberOfPoints="201" NumberOfPolys="199">'
+        f'<Points><DataArray type="Float64">{places}</DataArray></Points><Polys>'
+        f'<DataArray type="Int32" Name="connectivity">{numbers}</DataArray>'
+        f'<DataArray type="Int32" Name="offsets">{ends}</DataArray></Polys></Piece></PolyData>'
+        "</VTKFile>"
+    )
     for name, text in texts.items():
         found = read(tmp_path, name, text)
         assert found.mesh.vertices[3].tolist() == [1, 3.5, 9], name

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
 
 _NOT_A_NUMBER = re.compile(rb"[-+]?(?:1\.#[a-z]+\d*|nan\([^)\s]*\))", re.I)
 _FORTRAN = re.compile(rb"(\d\.?)[dD]([-+]?\d)")
@@ -25,3 +29,31 @@ def mended(text: bytes) -> bytes:
     b'v 1.5e+00 nan nan'
     """
     return _FORTRAN.sub(rb"\1e\2", _NOT_A_NUMBER.sub(b"nan", text))
+
+
+def numbers_of(
+    words: Sequence[bytes], kind: np.dtype[np.generic] | type[np.generic] = np.float64
+) -> NDArray[np.generic]:
+    """Return words as numbers, mended where that is needed.
+
+    Parameters
+    ----------
+    words
+        One number each.
+    kind
+        Of which type.
+
+    Raises
+    ------
+    ValueError, OverflowError
+        When one is no number of that type.
+
+    Examples
+    --------
+    >>> numbers_of([b"1.5", b"2d1"]).tolist()
+    [1.5, 20.0]
+    """
+    try:
+        return np.array(words, dtype=kind)
+    except ValueError:
+        return np.array([mended(word) for word in words], dtype=kind)

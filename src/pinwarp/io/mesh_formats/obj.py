@@ -17,16 +17,18 @@ from numpy.typing import NDArray
 
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.words import counted
-from pinwarp.io.mesh_formats.numbers import mended
+from pinwarp.io.mesh_formats.numbers import numbers_of
 from pinwarp.io.mesh_formats.surface import BrokenMeshError, Report, Surface
 from pinwarp.io.mesh_formats.vertex_data import NO_DATA, VertexData
-from pinwarp.io.text import Lines, narrow, stretches_of
+from pinwarp.io.text import Lines, narrow, stretches_of, with_lf
 
 # Comments come behind the three words that are taken.
 _VERTEX = re.compile(rb"^[ \t]*v[ \t]+([^\n]*)", re.M | re.I)
 _FACE = re.compile(rb"^[ \t]*fo?[ \t]+([^\n#]*)", re.M | re.I)
 _LOOSE = re.compile(rb"^[ \t]*[lp][ \t]", re.M | re.I)
-_CONTINUED = re.compile(rb"\\[ \t]*(?:\r\n|\n|\r)")
+_CONTINUED = re.compile(rb"\\[ \t]*\n")
+# Only of what is read: the path of a folder may end in a backslash.
+_LONG_LINE = re.compile(rb"^[ \t]*(?:v|fo?)[ \t](?:[^\n\\]|\\[ \t]*\n|\\)*", re.M | re.I)
 _TEXTURE_AND_NORMAL = re.compile(rb"/[^\s]*")
 _ROWS = 1 << 16
 _NONE = np.empty(0, dtype=np.int64)
@@ -62,8 +64,10 @@ def read_obj(data: bytes, report: Report) -> Surface:
     if b"\0" in text[:4096]:
         raise BrokenMeshError("This is not an OBJ file: it is not text. Export the mesh again.")
     if b"\\" in text:
-        # A backslash continues a line; the blank in its place keeps the line numbers nearly right.
-        text = _CONTINUED.sub(b" ", text)
+        text = with_lf(text)
+        if _CONTINUED.search(text):
+            # The blank in place of a line end keeps the line numbers nearly right.
+            text = _LONG_LINE.sub(lambda line: _CONTINUED.sub(b" ", line[0]), text)
     points, corners, sizes = [np.empty((0, 3))], [_NONE], [_NONE]
     count = loose = 0
     for lines in stretches_of(text):
@@ -83,11 +87,10 @@ def read_obj(data: bytes, report: Report) -> Surface:
 
 def _vertices(chunk: bytes) -> NDArray[np.float64]:
     rows = [row.split(None, 3)[:3] for row in _VERTEX.findall(chunk)]
-    try:
-        return np.array(rows, dtype=np.float64).reshape(len(rows), 3)
-    except ValueError:
-        rows = [mended(b" ".join(row)).split() for row in rows]
-        return np.array(rows, dtype=np.float64).reshape(len(rows), 3)
+    if any(len(row) < 3 for row in rows):
+        raise ValueError
+    words = list(chain.from_iterable(rows))
+    return numbers_of(words).astype(np.float64, copy=False).reshape(len(rows), 3)
 
 
 def _faces(chunk: bytes, vertices_before: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import re
 import struct
+from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +18,7 @@ from numpy.typing import NDArray
 
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.words import counted
-from pinwarp.io.mesh_formats.numbers import mended
+from pinwarp.io.mesh_formats.numbers import numbers_of
 from pinwarp.io.mesh_formats.surface import (
     BrokenMeshError,
     Report,
@@ -103,7 +105,8 @@ def _announced(data: bytes) -> int:
 
 def _is_text(data: bytes) -> bool:
     # The count of a binary file has a zero in it.
-    return b"\0" not in data[:512] and _TEXT.search(data[:_LOOKED_AT]) is not None
+    # Text may have some behind its end.
+    return b"\0" not in data[:512].rstrip(b"\0") and _TEXT.search(data[:_LOOKED_AT]) is not None
 
 
 def _read_binary(
@@ -176,11 +179,9 @@ def _without_names(text: bytes) -> bytes:
     return _NAME.sub(b"", small) if any(word in small for word in _WITH_NAMES) else small
 
 
-def _numbers(found: list[tuple[bytes, ...]]) -> NDArray[np.float64]:
-    try:
-        return np.array(found, dtype=np.float64)
-    except ValueError:
-        return np.array([[mended(word) for word in words] for words in found], dtype=np.float64)
+def _numbers(found: Sequence[Sequence[bytes]]) -> NDArray[np.float64]:
+    words = list(chain.from_iterable(found))
+    return numbers_of(words).astype(np.float64, copy=False)
 
 
 def _first_bad_vertex(text: bytes) -> int:

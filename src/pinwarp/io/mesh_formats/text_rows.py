@@ -13,7 +13,7 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.io.mesh_formats.numbers import mended
+from pinwarp.io.mesh_formats.numbers import numbers_of
 from pinwarp.io.mesh_formats.surface import BrokenMeshError, Report
 from pinwarp.io.text import Lines, stretches_of
 
@@ -204,15 +204,11 @@ def _floats(
     words: list[bytes], rows: list[_Row], numbers: list[int], width: int
 ) -> NDArray[np.float64]:
     try:
-        return np.array(words, dtype=np.float64)
-    except ValueError:
-        words = [mended(word) for word in words]
-    try:
-        return np.array(words, dtype=np.float64)
+        return numbers_of(words).astype(np.float64, copy=False)
     except ValueError as error:
         for row, number in zip(rows, numbers, strict=True):
             try:
-                np.array([mended(word) for word in row[:width]], dtype=np.float64)
+                numbers_of(row[:width])
             except ValueError:
                 raise BrokenMeshError(
                     f"Expected are {width} numbers. Repair this line or export the mesh again.",

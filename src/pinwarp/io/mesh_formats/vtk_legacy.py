@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinwarp.core.words import counted
-from pinwarp.io.mesh_formats.numbers import mended
+from pinwarp.io.mesh_formats.numbers import numbers_of
 from pinwarp.io.mesh_formats.surface import (
     BrokenMeshError,
     Report,
@@ -99,7 +99,7 @@ class _File:
             stop = end if stop < 0 else stop
             text = self.data[self.place : stop]
             try:
-                parts.append(_numbers(text, dtype))
+                parts.append(numbers_of(text.split(), dtype))
             except (ValueError, OverflowError) as error:
                 raise BrokenMeshError(f"Numbers were expected: {error}. Export it again.") from None
             self.place = stop
@@ -108,13 +108,6 @@ class _File:
         if len(found) != count:
             raise cut_off()
         return found
-
-
-def _numbers(text: bytes, dtype: np.dtype[np.generic]) -> NDArray[np.generic]:
-    try:
-        return np.array(text.split(), dtype=dtype)
-    except ValueError:
-        return np.array(mended(text).split(), dtype=dtype)
 
 
 def cut_off() -> BrokenMeshError:

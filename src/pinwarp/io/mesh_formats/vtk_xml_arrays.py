@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinwarp.io.mesh_formats.allowance import Allowance
+from pinwarp.io.mesh_formats.numbers import numbers_of
 from pinwarp.io.mesh_formats.surface import BrokenMeshError
 
 _TYPES = {
@@ -109,7 +110,7 @@ def read_array(element: ET.Element, encoding: Encoding, count: int | None) -> ND
     kind = _TYPES.get(element.get("type", ""))
     if kind is None:
         raise BrokenMeshError(DAMAGED)
-    text = element.text or ""
+    text = (element.text or "").encode()
     wanted = None if count is None else count * np.dtype(kind).itemsize
     try:
         match element.get("format", "ascii"):
@@ -117,9 +118,9 @@ def read_array(element: ET.Element, encoding: Encoding, count: int | None) -> ND
                 words = text.split() if count is None else text.split(None, count)
                 if count not in (None, len(words)):
                     raise BrokenMeshError(DAMAGED)
-                return np.array(words, dtype=kind)
+                return numbers_of(words, np.dtype(kind))
             case "binary":
-                content = _unpacked(_from_base64(text.encode()), encoding, wanted)
+                content = _unpacked(_from_base64(text), encoding, wanted)
             case "appended":
                 offset = count_of(element, "offset")
                 if offset > len(encoding.appended):
