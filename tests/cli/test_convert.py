@@ -48,7 +48,7 @@ def test_the_format_can_be_named_where_the_suffix_does_not_tell(pinwarp_command,
     assert "'.dat' are not supported" in pinwarp_command("convert", marks, out, exit_code=2).stderr
     pinwarp_command("convert", marks, out, "--to", "pts")
     assert out.read_text().startswith("Version 1.0")
-    outcome = pinwarp_command("convert", marks, tmp_path / "x.pp", "--to", "xyz", exit_code=2)
+    outcome = pinwarp_command("convert", marks, tmp_path / "x.pp", "--to", "abc", exit_code=2)
     assert "Choose one of" in outcome.stderr
 
 

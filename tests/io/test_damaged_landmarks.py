@@ -52,7 +52,7 @@ def valid_files(folder: Path) -> list[Path]:
         paths[-1].write_bytes(example.text.encode())
     for known in FORMATS:
         paths.append(folder / f"ours{known.SUFFIXES[0]}")
-        write_landmarks(paths[-1], LANDMARKS, None if known.HOLDS_PAIRS else Side.SOURCE)
+        write_landmarks(paths[-1], LANDMARKS, None if known.HOLDS.pairs else Side.SOURCE)
     return paths
 
 

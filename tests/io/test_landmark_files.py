@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import csv
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -18,14 +17,28 @@ from pinwarp.io.landmark_files import (
     read_landmarks,
     write_landmarks,
 )
-from pinwarp.io.landmark_formats import morphologika, opensim_creator, tps
+from pinwarp.io.landmark_formats import (
+    amira,
+    blank_table,
+    idav,
+    meshlab,
+    mni_tag,
+    nts,
+    opensim_creator,
+    particles,
+    slicer_fcsv,
+)
 from pinwarp.io.template import read_template
 
 from . import strategies
 from .landmark_formats.examples import EXAMPLES, IDAV, SLICER_JSON, Example
 
-PAIR_FORMATS = [known for known in FORMATS if known.HOLDS_PAIRS]
-NAMED = [known for known in FORMATS if known not in (tps, morphologika)]
+PAIR_FORMATS = [known for known in FORMATS if known.HOLDS.pairs]
+NAMED = [known for known in FORMATS if known.HOLDS.names]
+# What is not placed is left out, where there is no word for it.
+WITHOUT_EMPTY = (opensim_creator, slicer_fcsv, mni_tag, amira, blank_table, particles)
+# What becomes of blanks in a name, where they stand between two words of a line.
+BLANKS: dict[LandmarkFormat, str] = {idav: "_", nts: "_", blank_table: " "}
 ODD_NAMES = ["=1+1", "'=1+1", "-5", "@b", 'say "a"', "a, b", "Höcker ✓", "a\\b", "<&>", "#1", "1"]
 
 
@@ -62,8 +75,13 @@ def test_the_example_of_every_format_is_read_exactly(tmp_path: Path, example: Ex
 def test_a_file_under_any_suffix_is_known_by_its_content(
     tmp_path: Path, example: Example, suffix: str
 ) -> None:
-    # A table of three columns is all that is left of the one of Slicer 3, which had no header.
-    if suffix == ".fcsv" and example.format == "OpenSim Creator CSV":
+    # A table of three columns is all that is left of the one of Slicer 3, which had no header,
+    # and one between blanks of those that begin with more.
+    if (suffix, example.format) in (
+        (".fcsv", "OpenSim Creator CSV"),
+        (".pts", "Table between blanks"),
+        (".particles", "Table between blanks"),
+    ):
         return
     reading = read_landmarks(saved(tmp_path, f"a{suffix}", example.text), Side.SOURCE)
     assert (reading.format, reading.landmarks) == (example.format, example.landmarks)
@@ -131,15 +149,15 @@ def expected_side(
     known: LandmarkFormat, landmarks: list[Landmark], side: Side
 ) -> list[tuple[str, str]]:
     """Name and position, exact to the last bit, as the format can hold them."""
-    if known.NAME in ("OpenSim Creator CSV", "3D Slicer .fcsv", "MNI .tag"):
+    if known in WITHOUT_EMPTY:
         landmarks = [x for x in landmarks if x.position(side)]
     marks = [(x.name, repr(x.position(side))) for x in landmarks]
-    if known in (tps, morphologika):
+    if not known.HOLDS.names:
         marks = [(f"landmark_{n}", at) for n, (_, at) in enumerate(marks)]
-    if known.NAME == "MeshLab .pp":
+    if known is meshlab:
         marks = [(re.sub("[\ufffe\uffff]", "\ufffd", name), at) for name, at in marks]
-    if known.NAME == "IDAV Landmark .pts":
-        marks = [("_".join(name.split()), at) for name, at in marks]
+    if known in BLANKS:
+        marks = [(BLANKS[known].join(name.split()), at) for name, at in marks]
     return marks
 
 
@@ -169,25 +187,27 @@ def test_pairs_come_back_exactly_half_placed_ones_included(
 ) -> None:
     path = tmp_path_factory.getbasetemp() / f"pairs{known.SUFFIXES[0]}"
     notes = write_landmarks(path, landmarks, None)
-    if known.NAME == "MNI .tag":
+    if known in (mni_tag, amira):
         halves = [x for x in landmarks if not x.is_complete]
-        assert bool(notes) == bool(halves)
+        assert any("both sides" in note for note in notes) == bool(halves)
         landmarks = [x for x in landmarks if x.is_complete]
     if not landmarks:
         return
     reading = read_landmarks(path, Side.SOURCE)
     assert reading.is_pairs
     assert reading.skipped == ()
-    assert [(x.name, repr(x.source), repr(x.destination)) for x in reading.landmarks] == [
-        (x.name, repr(x.source), repr(x.destination)) for x in landmarks
+    assert [(repr(x.source), repr(x.destination)) for x in reading.landmarks] == [
+        (repr(x.source), repr(x.destination)) for x in landmarks
     ]
+    if known.HOLDS.names:
+        assert reading.names == tuple(x.name for x in landmarks)
 
 
 @pytest.mark.parametrize("known", NAMED, ids=name_of)
 def test_odd_names_come_back(tmp_path: Path, known: LandmarkFormat) -> None:
     landmarks = [Landmark(name, (n, 2, 3)) for n, name in enumerate(ODD_NAMES)]
     reading = came_back(tmp_path / f"a{known.SUFFIXES[0]}", landmarks, Side.SOURCE)
-    blanks = "_" if known.SUFFIXES == (".pts",) else " "
+    blanks = BLANKS.get(known, " ")
     assert list(reading.names) == [name.replace(" ", blanks) for name in ODD_NAMES]
 
 
@@ -278,12 +298,12 @@ def test_an_unknown_suffix_is_refused_with_those_that_are_known(tmp_path: Path) 
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("known", [x for x in FORMATS if not x.HOLDS_PAIRS], ids=name_of)
+@pytest.mark.parametrize("known", [x for x in FORMATS if not x.HOLDS.pairs], ids=name_of)
 def test_pairs_are_not_written_where_only_one_side_fits(
     tmp_path: Path, known: LandmarkFormat
 ) -> None:
     path = tmp_path / f"a{known.SUFFIXES[0]}"
-    with pytest.raises(FileFormatError, match=r"one side only.*\.csv, \.bigwarp\.csv, \.tag"):
+    with pytest.raises(FileFormatError, match=r"one side only.*\.csv, \.bigwarp\.csv, .*\.tag"):
         write_landmarks(path, [Landmark("a", (1, 2, 3), (4, 5, 6))], None)
     assert not path.exists()
 
@@ -311,11 +331,23 @@ def test_a_landmark_that_is_not_placed_keeps_its_row(tmp_path: Path, suffix: str
     assert reading.notes == ("2 landmarks have no position: they are names still to be placed.",)
 
 
-def test_roles_and_notes_do_not_matter(tmp_path: Path) -> None:
+@pytest.mark.parametrize("known", FORMATS, ids=name_of)
+def test_what_a_format_has_no_place_for_is_told(tmp_path: Path, known: LandmarkFormat) -> None:
     landmark = Landmark("a", (1, 2, 3), role=Role.PASSENGER, note="=x", locked=True)
-    for known in FORMATS:
-        reading = came_back(tmp_path / f"a{known.SUFFIXES[0]}", [landmark], Side.SOURCE)
-        assert replace(reading.landmarks[0], name="a") == Landmark("a", (1, 2, 3))
+    path, holds = tmp_path / f"a{known.SUFFIXES[0]}", known.HOLDS
+    notes = write_landmarks(path, [landmark], Side.SOURCE)
+    (found,) = read_landmarks(path, Side.SOURCE).landmarks
+    assert (found.source, found.role) == ((1, 2, 3), Role.PAIR)
+    assert found.note == ("=x" if holds.notes else "")
+    assert found.locked == holds.locks
+    told = " ".join(notes)
+    for words, has_place in (
+        ("only their order", holds.names),
+        ("notes: those of a", holds.notes),
+        ("locks: those of a", holds.locks),
+        ("1 passenger (a)", False),
+    ):
+        assert (words in told) != has_place, words
 
 
 # Templates

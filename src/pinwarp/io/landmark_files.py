@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import contextlib
+from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 
@@ -10,20 +12,30 @@ from pinwarp.core.errors import FileFormatError, LandmarkError
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.io.atomic import write_atomically
 from pinwarp.io.landmark_formats import (
+    amira,
     bigwarp,
+    bigwarp_json,
+    blank_table,
     idav,
     meshlab,
     mni_tag,
     morphologika,
+    nts,
     opensim_creator,
+    particles,
     slicer_fcsv,
     slicer_json,
+    slicer_table,
+    specimen_table,
     tps,
 )
-from pinwarp.io.landmark_formats.reading import MOST, LandmarkReading, SkippedLine
+from pinwarp.io.landmark_formats.reading import MOST, LandmarkReading, ReadGroup, SkippedLine
 from pinwarp.io.landmark_formats.sliders import with_sliders
-from pinwarp.io.landmark_formats.writing import Written
-from pinwarp.io.text import read_text, refuse_binary
+from pinwarp.io.landmark_formats.specimens import FIRST
+from pinwarp.io.landmark_formats.writing import Holds, Outgoing, Written, lost
+from pinwarp.io.reading import read_content
+from pinwarp.io.strangers import refuse_stranger
+from pinwarp.io.text import decoded, refuse_binary
 
 __all__ = [
     "FORMATS",
@@ -32,13 +44,14 @@ __all__ = [
     "LandmarkReading",
     "SkippedLine",
     "format_of",
+    "located",
     "read_landmarks",
     "write_landmarks",
 ]
 
 # Far more than anybody clicks; a larger file is another kind of file, and would fill the memory.
 _LARGEST = 8 << 20
-_HEAD = 4096
+_HEAD = 1 << 16
 
 
 class LandmarkFormat(Protocol):
@@ -53,8 +66,8 @@ class LandmarkFormat(Protocol):
         """The ends of its files' names, in lower case, the usual one first."""
 
     @property
-    def HOLDS_PAIRS(self) -> bool:
-        """Whether both sides go into one file; every format holds one side."""
+    def HOLDS(self) -> Holds:
+        """What it has a place for, beside positions on one side."""
 
     def matches(self, head: str, /) -> bool:
         """Whether a text that begins like this is in this format."""
@@ -62,31 +75,72 @@ class LandmarkFormat(Protocol):
     def read(self, path: str | Path, text: str, side: Side, /) -> LandmarkReading:
         """Read a text; ``path`` is for the messages."""
 
-    def text_of(
-        self, landmarks: Sequence[Landmark], side: Side | None, unit: str, title: str, /
-    ) -> Written:
-        """Return the text of one side, or of pairs where ``side`` is None."""
+    def text_of(self, outgoing: Outgoing, /) -> Written:
+        """Return the text of one side, or of pairs."""
+
+
+class SpecimenFormat(LandmarkFormat, Protocol):
+    """A format whose files may hold several specimens."""
+
+    def read_specimen(
+        self, path: str | Path, text: str, side: Side, which: str, /
+    ) -> LandmarkReading:
+        """Read one of them, by its name or number."""
 
 
 # The tables without a mark of their own come last: any format above may look like one.
 FORMATS: tuple[LandmarkFormat, ...] = (
+    bigwarp_json,
     slicer_json,
     slicer_fcsv,
     meshlab,
     mni_tag,
+    amira,
     idav,
     tps,
+    nts,
     morphologika,
     bigwarp,
+    slicer_table,
+    specimen_table,
+    particles,
+    blank_table,
     opensim_creator,
 )
+_OF_SPECIMENS: tuple[SpecimenFormat, ...] = (tps, morphologika, nts, specimen_table)
 
 _TABLES: LandmarkFormat = opensim_creator
+# Tables that look like others, and the suffix of those, which then settles it.
+_SETTLED: tuple[tuple[LandmarkFormat, LandmarkFormat], ...] = (
+    (opensim_creator, slicer_fcsv),  # Slicer 3 wrote tables without any mark.
+    (blank_table, idav),
+    (blank_table, particles),
+)
 
 LANDMARK_SUFFIXES = tuple(
     dict.fromkeys(suffix for known in reversed(FORMATS) for suffix in known.SUFFIXES)
 )
 """Every suffix of a landmark file, OpenSim Creator's first."""
+
+
+def located(path: str | Path) -> tuple[Path, str]:
+    """Return the file that is meant, and which specimen in it, where ``FILE#SPECIMEN`` says so.
+
+    Parameters
+    ----------
+    path
+        A file whose own name has a ``#`` in it is meant as it is.
+
+    Examples
+    --------
+    >>> located("skulls.tps#fem01")[1], located("skulls.tps")[1]
+    ('fem01', '')
+    """
+    path = Path(path)
+    file, mark, which = path.name.rpartition("#")
+    if not mark or not file or path.exists():
+        return path, FIRST
+    return path.with_name(file), which
 
 
 def read_landmarks(path: str | Path, side: Side) -> LandmarkReading:
@@ -95,7 +149,8 @@ def read_landmarks(path: str | Path, side: Side) -> LandmarkReading:
     Parameters
     ----------
     path
-        The file. Its suffix decides only where its content leaves it open.
+        The file. Its suffix decides only where its content leaves it open. Of a file of several
+        specimens the first is read, or the one that is named: ``FILE#SPECIMEN``.
     side
         The side that a file of one side belongs to; a file of pairs fills both.
 
@@ -122,7 +177,33 @@ def read_landmarks(path: str | Path, side: Side) -> LandmarkReading:
     >>> reading.format, reading.names
     ('IDAV Landmark .pts', ('S000',))
     """
-    text = read_text(path, "landmark", _LARGEST)
+    path, which = located(path)
+    text = _text_of(path)
+    known = _format_in(path, text)
+    several = next((x for x in _OF_SPECIMENS if x is known), None)
+    if several is not None:
+        reading = several.read_specimen(path, text, side, which)
+    elif which != FIRST:
+        raise FileFormatError(
+            path, f"It holds one specimen: leave out '#{which}'. Its format is {known.NAME}."
+        )
+    else:
+        reading = known.read(path, text, side)
+    return with_sliders(path, reading) if known is tps else reading
+
+
+def _text_of(path: Path) -> str:
+    """Return what is in a file, as far as it can be one of landmarks."""
+    try:
+        data = read_content(path, what="landmark", largest=_LARGEST).data
+    except FileFormatError:
+        # What is too large is told by what it is, where that is known.
+        if path.is_file():
+            with contextlib.suppress(OSError), path.open("rb") as file:
+                refuse_stranger(path, file.read(_HEAD))
+        raise
+    refuse_stranger(path, data)
+    text = decoded(data)
     refuse_binary(path, text)
     lines = text.count("\n") + text.count("\r") - text.count("\r\n")
     if lines > MOST:
@@ -135,9 +216,7 @@ def read_landmarks(path: str | Path, side: Side) -> LandmarkReading:
         raise FileFormatError(
             path, "This is a session with its own meshes: open it instead of importing it."
         )
-    known = _format_in(path, text)
-    reading = known.read(path, text, side)
-    return with_sliders(Path(path), reading) if known is tps else reading
+    return text
 
 
 def recognised(text: str) -> LandmarkFormat | None:
@@ -155,8 +234,7 @@ def recognised(text: str) -> LandmarkFormat | None:
 
 def _format_in(path: str | Path, text: str) -> LandmarkFormat:
     found, by_suffix = recognised(text), _format_by_suffix(path)
-    # Slicer 3 wrote tables without any mark.
-    if found is None or (found is _TABLES and by_suffix is slicer_fcsv):
+    if found is None or (found, by_suffix) in _SETTLED:
         return by_suffix or _TABLES
     return found
 
@@ -203,6 +281,7 @@ def write_landmarks(
     *,
     unit: str = "",
     known: LandmarkFormat | None = None,
+    groups: Iterable[ReadGroup] = (),
 ) -> tuple[str, ...]:
     r"""Write landmarks in the format of the file's suffix, all of them or nothing.
 
@@ -219,6 +298,8 @@ def write_landmarks(
         others have no unit and get the numbers as they are.
     known
         The format; without it, that of the file's suffix.
+    groups
+        The curves and patches that some of them are points of.
 
     Returns
     -------
@@ -243,17 +324,20 @@ def write_landmarks(
     'LM3=1\n1.0 2.0 3.0\nID=femur\n'
     """
     known = known or format_of(path)
-    if side is None and not known.HOLDS_PAIRS:
-        both = ", ".join(x.SUFFIXES[0] for x in reversed(FORMATS) if x.HOLDS_PAIRS)
+    holds = known.HOLDS
+    if side is None and not holds.pairs:
+        both = ", ".join(x.SUFFIXES[0] for x in reversed(FORMATS) if x.HOLDS.pairs)
         raise FileFormatError(
             path,
             f"{known.NAME} holds one side only. Export source and destination to a file each, "
             f"or choose a format of pairs ({both}).",
         )
     title = Path(path).name.partition(".")[0]
+    outgoing = Outgoing(tuple(landmarks), side, unit, title, tuple(groups))
+    kept = tuple(x for x in outgoing.groups if (holds.curves if x.is_curve else holds.patches))
     try:
-        written = known.text_of(tuple(landmarks), side, unit, title)
+        written = known.text_of(replace(outgoing, groups=kept))
     except LandmarkError as error:
         raise FileFormatError(path, str(error)) from error
     write_atomically(path, written.text)
-    return written.notes
+    return (*lost(holds, outgoing), *written.notes)

@@ -114,6 +114,60 @@ MNI_TAG = Example(
     ),
 )
 
+SLICER_TABLE = Example(
+    ".csv",
+    "3D Slicer control-point table",
+    "label,r,a,s,defined,selected,visible,locked,description\n"
+    "nasion,1,2,3,1,1,1,0,worn\nbregma,0,0,0,0,1,1,0,\n",
+    (Landmark("nasion", (1, 2, 3), note="worn"), Landmark("bregma")),
+)
+MORPHOJ = Example(
+    ".csv",
+    "Table of specimens (MorphoJ)",
+    "Id,LM1x,LM1y,LM1z,LM2x,LM2y,LM2z,LM3x,LM3y,LM3z\n"
+    "fem01,1,2,3,4,5,6,,,\nfem02,1.1,2,3,4,5,6,7,8,9\n",
+    (Landmark("LM1", (1, 2, 3)), Landmark("LM2", (4, 5, 6)), Landmark("LM3")),
+)
+NTS_SINGLE = Example(
+    ".nts",
+    "NTS",
+    '"fem01\n1 2 3 0 DIM=3\n1 2 3\n4 5 6\n',
+    (Landmark("landmark_0", (1, 2, 3)), Landmark("landmark_1", (4, 5, 6))),
+)
+LANDMARK_DTA = Example(
+    ".dta",
+    "NTS",
+    "1 2L 6 1 9999 DIM=3\n\nfem 01.ply\nfem 02.ply\n\n1 2 3\n9999 9999 9999\n7 8 9\n10 11 12\n",
+    (Landmark("landmark_0", (1, 2, 3)), Landmark("landmark_1")),
+)
+AMIRA_PAIRS = Example(
+    ".landmarkAscii",
+    "Amira .landmarkAscii",
+    "# Avizo 3D ASCII 2.0\n\ndefine Markers 2\n\nParameters {\n    NumSets 2,\n"
+    '    ContentType "LandmarkSet"\n}\n\nMarkers { float[3] Coordinates } @1\n'
+    "Markers { float[3] Coordinates2 } @2\n\n# Data section follows\n"
+    "@1\n1 2 3\n4 5 6\n\n@2\n7 8 9\n10 11 12\n",
+    (
+        Landmark("landmark_0", (1, 2, 3), (7, 8, 9)),
+        Landmark("landmark_1", (4, 5, 6), (10, 11, 12)),
+    ),
+)
+BIGWARP_JSON = Example(
+    ".bigwarp.json",
+    "BigWarp JSON",
+    """{"type": "BigWarpLandmarks", "numDimensions": 3,
+ "movingPoints": [[1, 2, 3], [4, 5, 6]], "fixedPoints": [[7, 8, 9], [Infinity, Infinity, Infinity]],
+ "active": [true, false], "names": ["Pt-0", "Pt-1"]}
+""",
+    (Landmark("Pt-0", (1, 2, 3), (7, 8, 9)), Landmark("Pt-1", (4, 5, 6))),
+)
+BLANK_TABLE = Example(
+    ".xyz",
+    "Table between blanks",
+    "2\nnasion 1.0 2.0 3.0\nleft tragus 4.0 5.0 6.0\n",
+    (Landmark("nasion", (1, 2, 3)), Landmark("left tragus", (4, 5, 6))),
+)
+
 EXAMPLES = (
     OPENSIM_SIDE,
     OPENSIM_PAIRS,
@@ -127,4 +181,11 @@ EXAMPLES = (
     MORPHOLOGIKA,
     TPS,
     MNI_TAG,
+    SLICER_TABLE,
+    MORPHOJ,
+    NTS_SINGLE,
+    LANDMARK_DTA,
+    AMIRA_PAIRS,
+    BIGWARP_JSON,
+    BLANK_TABLE,
 )

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Position, Side
 from pinwarp.io.csv_cells import (
     YES_NO,
@@ -17,19 +18,21 @@ from pinwarp.io.csv_cells import (
 )
 from pinwarp.io.csv_text import Row, csv_line, rows_of
 from pinwarp.io.landmark_formats.lines import checked_name, one_line
-from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
-from pinwarp.io.landmark_formats.writing import Written
+from pinwarp.io.landmark_formats.reading import DefaultName, Gathering, LandmarkReading
+from pinwarp.io.landmark_formats.writing import Holds, Outgoing, Written
 from pinwarp.io.text import lines_of
 
 NAME = "BigWarp CSV"
 SUFFIXES = (".bigwarp.csv",)
-HOLDS_PAIRS = True
+HOLDS = Holds(pairs=True, switches=True)
 
+# Cells of a row in two dimensions, without and with a number behind the second.
+_FLAT = (6, 7)
 _MISSING = re.compile(r"[+-]?inf(inity)?", re.IGNORECASE)
 
 
 def matches(head: str) -> bool:
-    """Whether the first row has a name, true or false, and six numbers.
+    """Whether the first row has a name, true or false, and six numbers, or four.
 
     Examples
     --------
@@ -38,7 +41,8 @@ def matches(head: str) -> bool:
     """
     for row in rows_of(lines_of(head)[:20], ","):
         if not row.is_blank:
-            return len(row.cells) in (8, 9) and row.cells[1].strip().lower() in ("true", "false")
+            is_switch = row.cells[1:2] and row.cells[1].strip().lower() in ("true", "false")
+            return bool(is_switch) and len(row.cells) in (*_FLAT, 8, 9)
     return False
 
 
@@ -75,14 +79,20 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     del side
     gathering = Gathering(path)
     rows = [row for row in rows_of(lines_of(text), ",") if not row.is_blank]
+    if rows and all(len(row.cells) in _FLAT for row in rows):
+        raise FileFormatError(
+            path,
+            "These landmarks of BigWarp have two dimensions. Three are needed.",
+            rows[0].line,
+        )
     for number, row in enumerate(rows):
-        gathering.take(row.line, row.text, _landmark, row, f"landmark_{number}")
+        gathering.take(row.line, row.text, _landmark, row, DefaultName.of(number))
     return gathering.reading(
         NAME, 'lines as in: "Pt-0","true","1.5","2","3","4.5","5","6"', is_pairs=True
     )
 
 
-def _landmark(row: Row, default: str) -> Landmark:
+def _landmark(row: Row, default: DefaultName) -> Landmark:
     if row.problem:
         raise ValueError(row.problem)
     cells = [cell.strip() for cell in row.cells]
@@ -94,8 +104,25 @@ def _landmark(row: Row, default: str) -> Landmark:
     if active is None:
         raise ValueError(f"the second cell is {shortened(cells[1])} and not true or false")
     source, destination = _position(cells[2:5]), _position(cells[5:8])
-    landmark = Landmark(checked_name(formula_unquoted(cells[0])) or default, source, destination)
+    return made(formula_unquoted(cells[0]), source, destination, default, active=active)
+
+
+def made(
+    name: str,
+    source: Position | None,
+    destination: Position | None,
+    default: DefaultName,
+    *,
+    active: bool,
+) -> Landmark:
+    """Return a landmark of BigWarp, which switches every half pair off: that says nothing."""
+    landmark = Landmark(checked_name(name) or default, source, destination)
     return replace(landmark, enabled=active or not landmark.is_complete)
+
+
+def is_active(landmark: Landmark) -> bool:
+    """Whether a landmark may take part: an active half pair would stop BigWarp's solver."""
+    return landmark.enabled and landmark.is_complete
 
 
 def _position(cells: Sequence[str]) -> Position | None:
@@ -104,31 +131,25 @@ def _position(cells: Sequence[str]) -> Position | None:
     return position_of(cells, ",")
 
 
-def text_of(landmarks: Sequence[Landmark], side: Side | None, unit: str, title: str) -> Written:
+def text_of(outgoing: Outgoing) -> Written:
     """Return the rows of pairs; those of one side have the other one missing.
 
     Parameters
     ----------
-    landmarks
+    outgoing
         The landmarks.
-    side
-        The only side to write, or None for both.
-    unit, title
-        Not used: the format has a place for neither.
 
     Examples
     --------
-    >>> print(text_of([Landmark("a", (1, 2, 3), (4, 5, 6))], None, "mm", "").text, end="")
+    >>> pair = Landmark("a", (1, 2, 3), (4, 5, 6))
+    >>> print(text_of(Outgoing((pair,), None)).text, end="")
     "a","true","1.0","2.0","3.0","4.0","5.0","6.0"
     """
-    del unit, title
     lines = []
-    for landmark in landmarks:
-        if side is not None:
-            landmark = landmark.placed(side.other, None)
-        # An active row without both positions would stop BigWarp's solver.
-        active = landmark.enabled and landmark.is_complete
-        cells = [one_line(landmark.name).strip(), "true" if active else "false"]
+    for landmark in outgoing.landmarks:
+        if outgoing.side is not None:
+            landmark = landmark.placed(outgoing.side.other, None)
+        cells = [one_line(landmark.name).strip(), "true" if is_active(landmark) else "false"]
         for position in (landmark.source, landmark.destination):
             cells += coordinates_text(position) if position is not None else ["Infinity"] * 3
         lines.append(csv_line(cells, all_in_quotes=True))

@@ -7,15 +7,22 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pinwarp.core.landmarks import Landmark, Side
+from pinwarp.core.words import some_of
 from pinwarp.io.csv_cells import is_number
-from pinwarp.io.landmark_formats.lines import landmark_on, one_line, three_numbers
-from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading, ReadGroup
-from pinwarp.io.landmark_formats.writing import Written, numbers_text
+from pinwarp.io.landmark_formats.lines import landmark_on, three_numbers
+from pinwarp.io.landmark_formats.reading import DefaultName, Gathering, LandmarkReading, ReadGroup
+from pinwarp.io.landmark_formats.writing import (
+    Holds,
+    Outgoing,
+    Written,
+    names_of_one_word,
+    numbers_text,
+)
 from pinwarp.io.text import filled_lines
 
 NAME = "IDAV Landmark .pts"
 SUFFIXES = (".pts",)
-HOLDS_PAIRS = False
+HOLDS = Holds(curves=True, patches=True)
 
 _VERSION = re.compile(r"version\s+\d", re.IGNORECASE)
 _MISSING = "9999"
@@ -63,7 +70,7 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     ('S000', (1.0, 2.0, 3.0))
     """
     gathering = Gathering(path)
-    grouped: dict[str, list[str]] = {}
+    grouped: dict[str, list[int | None]] = {}
     announced, rows = None, 0
     for number, line in filled_lines(text):
         words = line.split()
@@ -73,17 +80,16 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
             if len(words) == 1 and re.fullmatch("[0-9]{1,9}", line):
                 announced = int(line)
                 continue
-        gathering.take(number, line, _landmark, words, side, f"landmark_{rows}")
+        taken = gathering.take(number, line, _landmark, words, side, DefaultName.of(rows))
         if point := _GROUPED.fullmatch(words[0]):
-            grouped.setdefault(point[1].upper(), []).append(words[0])
+            grouped.setdefault(point[1].upper(), []).append(taken)
         rows += 1
     notes = []
     if announced is not None and announced != rows:
         notes.append(f"The file announces {announced} landmarks and holds {rows}: was it cut off?")
-    groups = [ReadGroup(x, tuple(points), x.startswith("C")) for x, points in grouped.items()]
-    return gathering.reading(
-        NAME, "lines as in: S000 -11.37 57.22 -15.77", notes=notes, groups=groups
-    )
+    for name, numbers in grouped.items():
+        gathering.add_group(ReadGroup(name, is_curve=name.startswith("C")), numbers)
+    return gathering.reading(NAME, "lines as in: S000 -11.37 57.22 -15.77", notes=notes)
 
 
 def _landmark(words: Sequence[str], side: Side, default: str) -> Landmark:
@@ -94,45 +100,45 @@ def _landmark(words: Sequence[str], side: Side, default: str) -> Landmark:
     return landmark_on(side, name, three_numbers(words[-3:], _MISSING))
 
 
-def text_of(landmarks: Sequence[Landmark], side: Side | None, unit: str, title: str) -> Written:
+def text_of(outgoing: Outgoing) -> Written:
     """Return the landmarks of one side; those that are not placed are three times 9999.
 
     Parameters
     ----------
-    landmarks
-        Blanks end a name in this format: they become underscores.
-    side
-        The side to write.
-    unit, title
-        Not used: the format has a place for neither.
+    outgoing
+        Blanks end a name in this format: they become underscores. Points of curves and patches
+        get names that say which: the format has no others for them.
 
     Examples
     --------
-    >>> print(text_of([Landmark("left tragus", (1, 2, 3))], Side.SOURCE, "mm", "").text, end="")
+    >>> print(text_of(Outgoing((Landmark("left tragus", (1, 2, 3)),))).text, end="")
     Version 1.0
     1
     left_tragus 1.0 2.0 3.0
     <BLANKLINE>
     """
-    del unit, title
-    assert side is not None, "pairs are refused before"
-    names = _names(landmarks)
-    changed = sum(name != landmark.name for name, landmark in zip(names, landmarks, strict=True))
+    numbered = _numbered(outgoing.groups)
+    names, blanks = names_of_one_word(numbered.get(x.name, x.name) for x in outgoing.landmarks)
     lines = ["Version 1.0", str(len(names))]
-    for name, landmark in zip(names, landmarks, strict=True):
-        lines.append(f"{name} {numbers_text(landmark.position(side), _MISSING)}")
-    underscores = f"{changed} name{'s' * (changed > 1)} with blanks got underscores."
+    for name, position in zip(names, outgoing.places, strict=True):
+        lines.append(f"{name} {numbers_text(position, _MISSING)}")
+    notes = [*blanks]
+    if any(old != new for old, new in numbered.items()):
+        notes.append("Points of curves and patches are called by their number: C000-000, P000-000.")
+    if closed := [group.name for group in outgoing.groups if group.is_closed]:
+        notes.append(f"The format has no closed curves: {some_of(closed)} became open.")
     # Some readers want an empty line behind the last landmark.
-    return Written("\n".join([*lines, "", ""]), (underscores,) if changed else ())
+    return Written("\n".join([*lines, "", ""]), tuple(notes))
 
 
-def _names(landmarks: Sequence[Landmark]) -> list[str]:
-    """Return names without blanks, each there once."""
-    taken: dict[str, None] = {}
-    for landmark in landmarks:
-        stem = name = "_".join(one_line(landmark.name).split()) or "_"
-        count = 2
-        while name in taken:
-            name, count = f"{stem}_{count}", count + 1
-        taken[name] = None
-    return list(taken)
+def _numbered(groups: Sequence[ReadGroup]) -> dict[str, str]:
+    """Return what the points of curves and patches are called, but for their anchors."""
+    found: dict[str, str] = {}
+    counts = {"C": 0, "P": 0}
+    for group in groups:
+        letter = "C" if group.is_curve else "P"
+        points = [point for point in group.points if point not in group.anchors]
+        for number, point in enumerate(points):
+            found.setdefault(point, f"{letter}{counts[letter]:03d}-{number:03d}")
+        counts[letter] += 1
+    return found

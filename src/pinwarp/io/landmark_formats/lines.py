@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pinwarp.core.landmarks import Landmark, Position, Side
 from pinwarp.io.csv_cells import number_of
 from pinwarp.io.csv_text import LONGEST_CELL
+from pinwarp.io.landmark_formats.reading import DefaultName
 
 # Control characters, line ends of every kind, and halves of characters.
 _NOT_IN_A_LINE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]+")
@@ -51,6 +52,8 @@ def checked_name(name: str) -> str:
     >>> checked_name("  left tragus ")
     'left tragus'
     """
+    if isinstance(name, DefaultName):
+        return name
     if len(name) > LONGEST_CELL:
         raise ValueError(f"its name is longer than {LONGEST_CELL:,} characters")
     return one_line(name).strip()

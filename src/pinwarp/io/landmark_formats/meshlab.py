@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
@@ -12,12 +12,12 @@ from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.io.careful_xml import XmlError, parse_xml
 from pinwarp.io.csv_cells import YES_NO, as_sentence, coordinates_text, shortened
 from pinwarp.io.landmark_formats.lines import landmark_on, one_line, three_numbers
-from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
-from pinwarp.io.landmark_formats.writing import Written
+from pinwarp.io.landmark_formats.reading import DefaultName, Gathering, LandmarkReading
+from pinwarp.io.landmark_formats.writing import Holds, Outgoing, Written
 
 NAME = "MeshLab .pp"
 SUFFIXES = (".pp",)
-HOLDS_PAIRS = False
+HOLDS = Holds()
 
 _SIGNATURE = re.compile(r"<(!DOCTYPE\s+)?PickedPoints\b")
 _AGAIN = "Save it again in MeshLab."
@@ -70,7 +70,7 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
         nonlocal number
         if tag == "point":
             words = lines[line - 1] if line <= len(lines) else ""
-            gathering.take(line, words, _landmark, attributes, side, f"landmark_{number}")
+            gathering.take(line, words, _landmark, attributes, side, DefaultName.of(number))
             number += 1
 
     try:
@@ -92,31 +92,24 @@ def _landmark(attributes: Mapping[str, str], side: Side, default: str) -> Landma
     return landmark_on(side, attributes.get("name", "").strip() or default, position)
 
 
-def text_of(landmarks: Sequence[Landmark], side: Side | None, unit: str, title: str) -> Written:
+def text_of(outgoing: Outgoing) -> Written:
     """Return the picked points of one side; those that are not placed are not active.
 
     Parameters
     ----------
-    landmarks
+    outgoing
         The landmarks.
-    side
-        The side to write.
-    unit, title
-        Not used: the format has a place for neither.
 
     Examples
     --------
-    >>> print(text_of([Landmark("a & b", (1, 2, 3))], Side.SOURCE, "mm", "").text, end="")
+    >>> print(text_of(Outgoing((Landmark("a & b", (1, 2, 3)),))).text, end="")
     <!DOCTYPE PickedPoints>
     <PickedPoints>
      <point x="1.0" y="2.0" z="3.0" active="1" name="a &amp; b"/>
     </PickedPoints>
     """
-    del unit, title
-    assert side is not None, "pairs are refused before"
     lines = ["<!DOCTYPE PickedPoints>\n<PickedPoints>\n"]
-    for landmark in landmarks:
-        position = landmark.position(side)
+    for landmark, position in zip(outgoing.landmarks, outgoing.places, strict=True):
         x, y, z = coordinates_text(position or (0.0, 0.0, 0.0))
         # Two characters that XML does not know at all.
         name = re.sub("[\ufffe\uffff]", "\ufffd", one_line(landmark.name))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError
@@ -11,13 +10,20 @@ from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.io.csv_cells import shortened
 from pinwarp.io.csv_text import LONGEST_CELL
 from pinwarp.io.landmark_formats.lines import checked_name, landmark_on, one_line, three_numbers
-from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
-from pinwarp.io.landmark_formats.writing import Written, left_out, numbers_text, placed_only
+from pinwarp.io.landmark_formats.reading import DefaultName, Gathering, LandmarkReading
+from pinwarp.io.landmark_formats.writing import (
+    Holds,
+    Outgoing,
+    Written,
+    left_out,
+    numbers_text,
+    placed_only,
+)
 from pinwarp.io.text import filled_lines
 
 NAME = "MNI .tag"
 SUFFIXES = (".tag",)
-HOLDS_PAIRS = True
+HOLDS = Holds(pairs=True)
 
 _SIGNATURE = "MNI Tag Point File"
 _VOLUMES = re.compile(r"volumes\s*=\s*([^;]*);?$", re.IGNORECASE)
@@ -83,7 +89,7 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
         if ended:
             gathering.skip(number, line, "it stands behind the semicolon that ends the points")
         elif line and line != ";":
-            gathering.take(number, line, _landmark, line, volumes, side, f"landmark_{row}")
+            gathering.take(number, line, _landmark, line, volumes, side, DefaultName.of(row))
             row += 1
         ended = ended or _without_label(line).endswith(";")
     return gathering.reading(
@@ -129,29 +135,26 @@ def _landmark(line: str, volumes: int, side: Side, default: str) -> Landmark:
     return Landmark(checked_name(name), first, three_numbers(words[3:6]))
 
 
-def text_of(landmarks: Sequence[Landmark], side: Side | None, unit: str, title: str) -> Written:
+def text_of(outgoing: Outgoing) -> Written:
     r"""Return the points of one side, or of pairs.
 
     Parameters
     ----------
-    landmarks
+    outgoing
         The format has no word for a position that is missing: what is not placed is left out,
         and so is half a pair.
-    side
-        The side to write, or None for pairs.
-    unit, title
-        Not used: the format has a place for neither.
 
     Examples
     --------
-    >>> print(text_of([Landmark("a", (1, 2, 3), (4, 5, 6))], None, "mm", "").text, end="")
+    >>> pair = Landmark("a", (1, 2, 3), (4, 5, 6))
+    >>> print(text_of(Outgoing((pair,), None)).text, end="")
     MNI Tag Point File
     Volumes = 2;
     <BLANKLINE>
     Points =
      1.0 2.0 3.0 4.0 5.0 6.0 "a";
     """
-    del unit, title
+    landmarks, side = outgoing.landmarks, outgoing.side
     if side is None:
         pairs = [x for x in landmarks if x.is_complete]
         notes = left_out(

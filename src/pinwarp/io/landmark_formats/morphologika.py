@@ -4,19 +4,31 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.io.csv_cells import shortened
 from pinwarp.io.landmark_formats.lines import landmark_on, one_line, three_numbers
-from pinwarp.io.landmark_formats.reading import Gathering, LandmarkReading
-from pinwarp.io.landmark_formats.writing import Written, numbers_text
+from pinwarp.io.landmark_formats.reading import (
+    MOST,
+    DefaultName,
+    Gathering,
+    LandmarkReading,
+)
+from pinwarp.io.landmark_formats.specimens import (
+    FIRST,
+    chosen,
+    named_specimens,
+    specimen_notes,
+)
+from pinwarp.io.landmark_formats.writing import Holds, Outgoing, Written, numbers_text
 from pinwarp.io.text import filled_lines
 
 NAME = "Morphologika"
 SUFFIXES = (".morphologika.txt",)
-HOLDS_PAIRS = False
+HOLDS = Holds(names=False)
 
 _SIGNATURE = re.compile(r"^\s*\[(individuals|landmarks|rawpoints)\]", re.I | re.M)
 _SECTION = re.compile(r"\[\s*(\w+)\s*\]$")
@@ -35,7 +47,19 @@ def matches(head: str) -> bool:
 
 
 def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
-    r"""Read the landmarks of the first specimen.
+    r"""Read the landmarks of the first specimen; see :func:`read_specimen`.
+
+    Examples
+    --------
+    >>> text = "[individuals]\n1\n[landmarks]\n1\n[dimensions]\n3\n[rawpoints]\n'#1\n1 2 3\n"
+    >>> read("a.txt", text, Side.SOURCE).landmarks[0].source
+    (1.0, 2.0, 3.0)
+    """
+    return read_specimen(path, text, side, FIRST)
+
+
+def read_specimen(path: str | Path, text: str, side: Side, which: str) -> LandmarkReading:
+    """Read the landmarks of one specimen.
 
     Parameters
     ----------
@@ -46,6 +70,8 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
         are passed over.
     side
         The side the landmarks belong to.
+    which
+        The specimen, by its name or number.
 
     Returns
     -------
@@ -56,16 +82,12 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     Raises
     ------
     FileFormatError
-        When the landmarks are not in three dimensions, or none could be read.
-
-    Examples
-    --------
-    >>> text = "[individuals]\n1\n[landmarks]\n1\n[dimensions]\n3\n[rawpoints]\n'#1\n1 2 3\n"
-    >>> read("a.txt", text, Side.SOURCE).landmarks[0].source
-    (1.0, 2.0, 3.0)
+        When there is no such specimen, the landmarks are not in three dimensions, or none could
+        be read.
     """
     section, counts = "", {"individuals": 1, "landmarks": 0, "dimensions": 3}
     rows: list[tuple[int, str]] = []
+    titles: list[str] = []
     for number, line in filled_lines(text):
         opening = _SECTION.match(line)
         if opening:
@@ -76,22 +98,26 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
                 raise FileFormatError(
                     path, f"Its landmarks have {line} dimensions. Three are needed.", number
                 )
+        elif section == "names":
+            titles.append(line)
         elif section == "rawpoints" and not line.startswith("'"):
             rows.append((number, line))
-    specimens, announced = counts["individuals"], counts["landmarks"] or len(rows)
+    announced = counts["landmarks"] or len(rows)
+    specimens = min(counts["individuals"], MOST)
+    names = named_specimens([*titles, *[""] * specimens][:specimens])
+    chosen_number = chosen(path, names, which)
+    first = chosen_number * announced
     gathering = Gathering(path)
-    for row, (number, line) in enumerate(rows[:announced]):
-        gathering.take(number, line, _landmark, line, side, f"landmark_{row}")
-    notes = []
-    if specimens > 1:
-        notes.append(f"{specimens} specimens: the first was read.")
-    if len(rows) < announced:
-        notes.append(
-            f"The file announces {announced} landmarks and holds {len(rows)}: was it cut off?"
-        )
+    for row, (number, line) in enumerate(rows[first : first + announced]):
+        gathering.take(number, line, _landmark, line, side, DefaultName.of(row))
+    notes = [*specimen_notes(names, which)]
+    held = max(0, len(rows) - first)
+    if held < announced:
+        notes.append(f"The file announces {announced} landmarks and holds {held}: was it cut off?")
     elif len(rows) > specimens * announced:
         notes.append(f"{len(rows) - specimens * announced} lines behind the last were ignored.")
-    return gathering.reading(NAME, "three numbers on each line below [rawpoints]", notes=notes)
+    reading = gathering.reading(NAME, "three numbers on each line below [rawpoints]", notes=notes)
+    return replace(reading, specimens=names, specimen=names[chosen_number])
 
 
 def _count(path: str | Path, section: str, number: int, line: str) -> int:
@@ -108,38 +134,36 @@ def _landmark(line: str, side: Side, name: str) -> Landmark:
     return landmark_on(side, name, three_numbers(line.replace(",", " ").split(), _MISSING))
 
 
-def text_of(landmarks: Sequence[Landmark], side: Side | None, unit: str, title: str) -> Written:
+def text_of(outgoing: Outgoing) -> Written:
     """Return one specimen, with the line ends that Morphologika wants.
 
     Parameters
     ----------
-    landmarks
-        Only their order is kept, not their names; where one is not placed, ``NA`` holds its
-        row (R reads that; Morphologika itself refuses it rather than take it for a place).
-    side
-        The side to write.
-    unit
-        Not used: the format has no place for it.
-    title
-        What the specimen is called.
+    outgoing
+        Only the order of landmarks is kept, not their names; where one is not placed, ``NA``
+        holds its row (R reads that; Morphologika itself refuses it rather than take it for a
+        place).
 
     Examples
     --------
-    >>> text = text_of([Landmark("a", (1, 2, 3))], Side.SOURCE, "mm", "femur").text
+    >>> text = text_of(Outgoing((Landmark("a", (1, 2, 3)),), title="femur")).text
     >>> text.split()[-6:]
     ['[rawpoints]', "'#1", 'femur', '1.0', '2.0', '3.0']
     """
-    del unit
-    assert side is not None, "pairs are refused before"
-    title = one_line(title).strip() or side.value
-    rows = [numbers_text(landmark.position(side), "NA") for landmark in landmarks]
+    title = one_line(outgoing.title_or_side).strip()
+    rows = [numbers_text(place, "NA") for place in outgoing.places]
+    return Written(specimen_text(rows, title))
+
+
+def specimen_text(rows: Sequence[str], title: str, wires: Sequence[str] = ()) -> str:
+    """Return a specimen of rows that are written out, with its wireframe where there is one."""
     sections = {
         "individuals": ["1"],
         "landmarks": [str(len(rows))],
         "dimensions": ["3"],
         "names": [title],
         "rawpoints": [f"'#1 {title}", *rows],
+        **({"wireframe": wires} if wires else {}),
     }
     lines = [line for name, body in sections.items() for line in (f"[{name}]", *body)]
-    notes = ("The format has no names for landmarks: only their order was kept.",)
-    return Written("\r\n".join([*lines, ""]), notes)
+    return "\r\n".join([*lines, ""])

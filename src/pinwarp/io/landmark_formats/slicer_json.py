@@ -1,28 +1,32 @@
-"""3D Slicer's list of control points, ``.mrk.json``."""
+"""3D Slicer's list of control points, ``.mrk.json``: landmarks and curves."""
 
 from __future__ import annotations
 
 import json
-import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple
 
 from pinwarp.core.errors import FileFormatError
-from pinwarp.core.landmarks import Landmark, Position, Side
+from pinwarp.core.landmarks import Landmark, Position, Side, flipped
+from pinwarp.core.words import counted, some_of
 from pinwarp.io.csv_cells import shortened
-from pinwarp.io.json_text import read_json
+from pinwarp.io.landmark_formats.json_root import alone, json_root, part, place, word
 from pinwarp.io.landmark_formats.lines import checked_name, landmark_on
-from pinwarp.io.landmark_formats.reading import MOST, Gathering, LandmarkReading, ReadGroup
-from pinwarp.io.landmark_formats.writing import Written, in_millimetres
-
-T = TypeVar("T")
+from pinwarp.io.landmark_formats.reading import (
+    MOST,
+    DefaultName,
+    Gathering,
+    LandmarkReading,
+    ReadGroup,
+)
+from pinwarp.io.landmark_formats.writing import Holds, Outgoing, Written, in_millimetres
 
 NAME = "3D Slicer .mrk.json"
 SUFFIXES = (".mrk.json", ".json")
-HOLDS_PAIRS = False
+HOLDS = Holds(notes=True, locks=True, switches=True, curves=True, frame="LPS", unit="mm")
 
 _SCHEMA = (
     "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/"
@@ -31,13 +35,28 @@ _SCHEMA = (
 _ORIENTATION = [-1.0, -0.0, -0.0, -0.0, -1.0, -0.0, 0.0, 0.0, 1.0]
 _POINTS = re.compile(r'"controlPoints"\s*:\s*\[')
 _BETWEEN = re.compile(r"[\s,]*")
-_MOST_NAMED = 3
 _CURVES = ("Curve", "ClosedCurve")
-_AGAIN = "Save it again in 3D Slicer."
+# A preview, which programs write that find landmarks themselves, is a place.
+_UNPLACED = ("undefined", "missing")
+
+
+class _List(NamedTuple):
+    """A list of control points: what it is, what it is called, its points and where they stand."""
+
+    kind: str
+    name: str
+    frame: str
+    unit: str
+    points: list[Any]
+    places: list[tuple[int, str]]
+
+    @property
+    def is_curve(self) -> bool:
+        return self.kind in _CURVES
 
 
 def matches(head: str) -> bool:
-    """Whether a text begins as a JSON object, which no other format does.
+    """Whether a text begins as a JSON object, which few other formats do.
 
     Examples
     --------
@@ -48,22 +67,23 @@ def matches(head: str) -> bool:
 
 
 def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
-    """Read the first list of control points, or curve, positions as they are stored.
+    """Read the first list of landmarks that has any, and all curves, positions as stored.
 
     Parameters
     ----------
     path
         The file, for the messages.
     text
-        What is in it.
+        What is in it; values may each stand in a list of one, as R writes them.
     side
         The side the landmarks belong to.
 
     Returns
     -------
     LandmarkReading
-        Points that are not ``"defined"`` come without a position. The frame is LPS and the
-        unit mm where the file says nothing, as in Slicer.
+        Points that are ``"undefined"`` or ``"missing"`` come without a position; description,
+        locked and selected are note, locked and enabled. The frame is LPS and the unit mm where
+        the file says nothing, as in Slicer.
 
     Raises
     ------
@@ -77,173 +97,149 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
     >>> read("a.mrk.json", text, Side.SOURCE).landmarks[0].source
     (1.0, 2.0, 3.0)
     """
-    root, notes = _parsed(path, text)
-    markups = _part(root, "markups", list)
-    markup = markups[0] if markups and isinstance(markups[0], dict) else {}
-    points = _part(markup, "controlPoints", list)
-    if points is None:
-        raise FileFormatError(
-            path, f"There is no list of control points (markups) in it. {_AGAIN}", 1
+    root, notes = json_root(path, text)
+    lists = _lists(path, root, text)
+    filled = [one for one in lists if one.points]
+    single = [one for one in filled if not one.is_curve]
+    single.sort(key=lambda one: one.kind != "Fiducial")
+    chosen = [*single[:1], *(one for one in filled if one.is_curve)]
+    if len(single) > 1:
+        left = some_of([one.name or one.kind for one in single[1:]])
+        notes.append(
+            f"{counted(len(single), 'list')} of points: the first was read, not {left}. Save each "
+            "to a file of its own to read them."
         )
-    if markups and len(markups) > 1:
-        notes.append(f"{len(markups)} lists: the first was read.")
-    kind = markup.get("type", "Fiducial")
-    is_curve = kind in _CURVES
-    if kind != "Fiducial" and not is_curve:
-        notes.append(f"It is a {_word(kind)}: its control points were read.")
-    frame = _word(markup.get("coordinateSystem") or "LPS")
-    frame = {"0": "RAS", "1": "LPS"}.get(frame, frame.upper())
+    if single and single[0].kind != "Fiducial":
+        notes.append(f"It is a {word(single[0].kind)}: its control points were read.")
+    frame, unit = (chosen[0].frame, chosen[0].unit) if chosen else ("", "mm")
     if frame not in ("LPS", "RAS"):
-        notes.append(f"The coordinate system {shortened(frame)} is not known.")
+        notes += [f"The coordinate system {shortened(frame)} is not known."] if frame else []
         frame = ""
+    if any(one.unit != unit for one in chosen):
+        notes.append(f"Its lists are in several units; all were read as if in {unit}.")
     gathering = Gathering(path)
-    places = _places(text, len(points))
-    names: dict[str, None] = {}
-    for number, (point, (line, words)) in enumerate(zip(points, places, strict=True)):
-        if not is_curve:
-            gathering.take(line, words, _landmark, point, side, f"landmark_{number}")
-            continue
-        gathering.take(line, words, _curve_point, point, side, f"landmark_{number}", names)
-    name = markup.get("name")
-    name = name if isinstance(name, str) else Path(path).name.partition(".")[0]
-    closed = kind == "ClosedCurve"
-    group = ReadGroup(checked_name(name), tuple(names), is_closed=closed, are_handles=True)
+    for one in chosen:
+        turns = {one.frame, frame} == {"LPS", "RAS"}
+        numbers = [
+            gathering.take(line, words, _landmark, point, side, DefaultName.of(number), turns)
+            for number, (point, (line, words)) in enumerate(
+                zip(one.points, one.places, strict=True)
+            )
+        ]
+        if one.is_curve:
+            name = checked_name(one.name or Path(path).name.partition(".")[0])
+            closed = one.kind == "ClosedCurve"
+            group = ReadGroup(name, is_closed=closed, are_handles=True)
+            gathering.add_group(group, numbers)
     return gathering.reading(
         NAME,
         'controlPoints as in: {"label": "nasion", "position": [12.5, -40.2, 60.1]}',
         frame=frame,
-        unit=_unit(markup.get("coordinateUnits")),
+        unit=unit,
         notes=notes,
-        groups=[group] if is_curve else [],
     )
 
 
-def _parsed(path: str | Path, text: str) -> tuple[Any, list[str]]:
-    """Return what the JSON says, and what the user should know about how it was understood."""
-    # A point has three lists and a dozen keys; more than memory holds are quickly written.
-    for what, count, most in (
-        ("lists", text.count("{") + text.count("["), 10 * MOST),
-        ("keys", text.count(":"), 30 * MOST),
-    ):
-        if count > most:
-            raise FileFormatError(
-                path,
-                f"It has {count:,} {what}, far more than landmarks. Check that it is the right "
-                "file.",
-                1,
+def _lists(path: str | Path, root: object, text: str) -> list[_List]:
+    """Return the lists of control points in a file."""
+    found = part(root, "markups", list)
+    markups = [part(root, "markups", dict)] if found is None else found
+    described: list[dict[str, Any]] = [
+        one
+        for x in markups
+        if isinstance(one := alone(x), dict) and part(one, "controlPoints", list) is not None
+    ]
+    if not described:
+        raise FileFormatError(
+            path,
+            "This is JSON, but there is no list of control points (markups) of 3D Slicer in it, "
+            "and no landmarks of BigWarp. Export the landmarks as CSV (name,x,y,z) from the "
+            "program that wrote it.",
+            1,
+        )
+    counts = [part(x, "controlPoints", list) or [] for x in described]
+    if sum(map(len, counts)) > MOST:
+        raise FileFormatError(
+            path,
+            f"It has more than {MOST:,} entries, which are no landmarks. "
+            "Check that it is the right file.",
+            1,
+        )
+    places = _places(text, [len(points) for points in counts])
+    lists = []
+    for markup, points, where in zip(described, counts, places, strict=True):
+        frame = word(markup.get("coordinateSystem") or "LPS")
+        lists.append(
+            _List(
+                part(markup, "type", str) or "Fiducial",
+                (part(markup, "name", str) or "").strip(),
+                {"0": "RAS", "1": "LPS"}.get(frame, frame.upper()),
+                _unit(markup.get("coordinateUnits")),
+                points,
+                where,
             )
-    try:
-        root, repeated = read_json(text, whole_as_float=True)
-    except json.JSONDecodeError as error:
-        raise FileFormatError(
-            path, f"This is not JSON, or it was cut off ({error.msg}). {_AGAIN}", error.lineno
-        ) from None
-    except RecursionError:
-        raise FileFormatError(
-            path, f"Its lists are nested too deeply for landmarks. {_AGAIN}", 1
-        ) from None
-    few = ", ".join(shortened(key) for key in repeated[:_MOST_NAMED])
-    more = f" and {len(repeated) - _MOST_NAMED} more" if len(repeated) > _MOST_NAMED else ""
-    if repeated:
-        return root, [f"A key is there twice, and the last counts: {few}{more}."]
-    return root, []
-
-
-def _part(value: Any, key: str, kind: type[T]) -> T | None:
-    """Return what stands under a key, if anything of that kind does."""
-    found = value.get(key) if isinstance(value, dict) else None
-    return found if isinstance(found, kind) else None
-
-
-def _word(value: object) -> str:
-    """Return text from a file that may hold anything, short enough for a message."""
-    if isinstance(value, float) and value.is_integer():
-        value = int(value)
-    return (value if isinstance(value, str) else repr(value))[:20]
+        )
+    return lists
 
 
 def _unit(value: object) -> str:
     """Return the unit, given as a word or as a code, its scheme and its meaning."""
-    if value in (None, ""):
+    if value in (None, "", []):
         return "mm"
     if isinstance(value, list) and value:
         value = value[0]
-    return _word(value).strip("[]").split(",")[0].strip("\"' ")
+    return word(value).strip("[]").split(",")[0].strip("\"' ")
 
 
-def _places(text: str, count: int) -> Iterator[tuple[int, str]]:
-    """Find the line at which each control point begins, and how it begins."""
-    start = _POINTS.search(text)
-    place = start.end() if start else 0
+def _places(text: str, counts: Sequence[int]) -> Iterator[list[tuple[int, str]]]:
+    """Find the line at which each control point of each list begins, and how it begins."""
     decoder = json.JSONDecoder(parse_int=float)
-    line, counted = 1, 0
-    for _ in range(count):
-        between = _BETWEEN.match(text, place)
-        place = between.end() if between else place
-        line += text.count("\n", counted, place)
-        counted = place
-        try:
-            end = decoder.raw_decode(text, place)[1]
-        except ValueError:
-            # The key stood somewhere else, too: the line is that of the first.
-            end = place
-        yield line, " ".join(text[place : min(end, place + 400)].split())
-        place = end
+    line = counted_to = at = 0
+    for count in counts:
+        start = _POINTS.search(text, at)
+        at = start.end() if start else at
+        found = []
+        for _ in range(count):
+            between = _BETWEEN.match(text, at)
+            at = between.end() if between else at
+            line += text.count("\n", counted_to, at)
+            counted_to = at
+            try:
+                end = decoder.raw_decode(text, at)[1]
+            except ValueError:
+                # The key stood somewhere else, too: the line is that of the first.
+                end = at
+            found.append((line + 1, " ".join(text[at : min(end, at + 400)].split())))
+            at = end
+        yield found
 
 
-def _landmark(point: object, side: Side, default: str) -> Landmark:
+def _landmark(point: object, side: Side, default: DefaultName, turns: bool) -> Landmark:
+    point = alone(point)
     if not isinstance(point, dict):
         raise ValueError("it is not a control point")
-    label = point.get("label")
-    name = label.strip() if isinstance(label, str) else ""
-    position = None
-    if point.get("positionStatus", "defined") == "defined":
-        position = _position(point.get("position"))
-    return landmark_on(side, name or default, position)
+    name = (part(point, "label", str) or "").strip()
+    status = part(point, "positionStatus", str)
+    position = None if status in _UNPLACED else place(point.get("position"))
+    landmark = replace(
+        landmark_on(side, name or default, position),
+        note=(part(point, "description", str) or "").strip(),
+        locked=part(point, "locked", bool) is True,
+        enabled=part(point, "selected", bool) is not False,
+    )
+    return flipped([landmark], side)[0] if turns else landmark
 
 
-def _curve_point(point: object, side: Side, default: str, names: dict[str, None]) -> Landmark:
-    """Return a point of a curve: all may have one label."""
-    landmark = _landmark(point, side, default)
-    name, number = landmark.name, 2
-    while name in names:
-        name, number = f"{landmark.name}_{number}", number + 1
-    names[name] = None
-    return replace(landmark, name=name)
-
-
-def _position(value: object) -> Position | None:
-    if value in (None, "", []):
-        return None
-    if not isinstance(value, list) or len(value) != 3:
-        raise ValueError("its position is not a list of three numbers")
-    numbers = []
-    for number in value:
-        if not isinstance(number, float):
-            raise ValueError(f"{shortened(str(number))} is not a number")
-        if not math.isfinite(number):
-            raise ValueError(f"'{number}' is not a finite number")
-        numbers.append(number)
-    x, y, z = numbers
-    return (x, y, z)
-
-
-def text_of(landmarks: Sequence[Landmark], side: Side | None, unit: str, title: str) -> Written:
-    """Return the list of one side.
+def text_of(outgoing: Outgoing) -> Written:
+    """Return the list of one side, and a list for each curve.
 
     As in ``.fcsv``, the frame is said to be LPS, and positions are converted to millimetres:
     Slicer refuses or ignores a unit that is not its own.
 
     Parameters
     ----------
-    landmarks
+    outgoing
         Those that have no position on the side are written as undefined.
-    side
-        The side to write.
-    unit
-        The unit the positions are in; empty where it is not known: then they stay as they are.
-    title
-        Not used.
 
     Raises
     ------
@@ -252,14 +248,20 @@ def text_of(landmarks: Sequence[Landmark], side: Side | None, unit: str, title: 
 
     Examples
     --------
-    >>> text = text_of([Landmark("nasion", (0.5, 0, 1))], Side.SOURCE, "m", "skull").text
+    >>> text = text_of(Outgoing((Landmark("nasion", (0.5, 0, 1)),), unit="m")).text
     >>> json.loads(text)["markups"][0]["controlPoints"][0]["position"]
     [500.0, 0.0, 1000.0]
     """
-    del title
-    assert side is not None, "pairs are refused before"
-    placed = in_millimetres(landmarks, unit)
-    return Written(markup_text([(x.name, x.position(side)) for x in placed], "Fiducial"))
+    assert outgoing.side is not None, "pairs are refused before"
+    marks = in_millimetres(outgoing.landmarks, outgoing.unit)
+    points = {mark.name: (mark, mark.position(outgoing.side)) for mark in marks}
+    along = {x for group in outgoing.groups for x in group.points if x not in group.anchors}
+    single = [point for name, point in points.items() if name not in along]
+    markups = [_markup(single, "Fiducial", "")] if single or not outgoing.groups else []
+    for group in outgoing.groups:
+        kind = "ClosedCurve" if group.is_closed else "Curve"
+        markups.append(_markup([points[x] for x in group.points], kind, group.name))
+    return Written(_text(markups))
 
 
 def markup_text(places: Sequence[tuple[str, Position | None]], kind: str, name: str = "") -> str:
@@ -274,24 +276,18 @@ def markup_text(places: Sequence[tuple[str, Position | None]], kind: str, name: 
     name
         What the list is called, if anything.
     """
-    points = []
-    for number, (label, position) in enumerate(places, 1):
-        points.append(
-            {
-                "id": str(number),
-                "label": label,
-                "description": "",
-                "associatedNodeID": "",
-                # What Slicer itself writes for a point that is not placed.
-                "position": "" if position is None else [float(value) for value in position],
-                "orientation": _ORIENTATION,
-                "selected": True,
-                "locked": False,
-                "visibility": True,
-                "positionStatus": "undefined" if position is None else "defined",
-            }
-        )
-    markup = {
+    return _text([_markup([(Landmark(label), at) for label, at in places], kind, name)])
+
+
+def _text(markups: Sequence[dict[str, Any]]) -> str:
+    root = {"@schema": _SCHEMA, "markups": markups}
+    return json.dumps(root, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _markup(
+    points: Sequence[tuple[Landmark, Position | None]], kind: str, name: str
+) -> dict[str, Any]:
+    return {
         "type": kind,
         **({"name": name} if name else {}),
         "coordinateSystem": "LPS",
@@ -300,7 +296,20 @@ def markup_text(places: Sequence[tuple[str, Position | None]], kind: str, name: 
         "fixedNumberOfControlPoints": False,
         "labelFormat": "%N-%d",
         "lastUsedControlPointNumber": len(points),
-        "controlPoints": points,
+        "controlPoints": [
+            {
+                "id": str(number),
+                "label": mark.name,
+                "description": mark.note,
+                "associatedNodeID": "",
+                # What Slicer itself writes for a point that is not placed.
+                "position": "" if at is None else [float(value) for value in at],
+                "orientation": _ORIENTATION,
+                "selected": mark.enabled,
+                "locked": mark.locked,
+                "visibility": True,
+                "positionStatus": "undefined" if at is None else "defined",
+            }
+            for number, (mark, at) in enumerate(points, 1)
+        ],
     }
-    root = {"@schema": _SCHEMA, "markups": [markup]}
-    return json.dumps(root, indent=1, ensure_ascii=False, allow_nan=False) + "\n"

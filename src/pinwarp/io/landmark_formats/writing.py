@@ -6,9 +6,84 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from pinwarp.core.errors import LandmarkError
-from pinwarp.core.landmarks import Landmark, Position, Side, scaled
+from pinwarp.core.landmarks import Landmark, Position, Role, Side, scaled
+from pinwarp.core.words import counted, some_of
+from pinwarp.io.landmark_formats.lines import one_line
+from pinwarp.io.landmark_formats.reading import ReadGroup
 
 _MILLIMETRES = {"µm": 0.001, "um": 0.001, "mm": 1.0, "cm": 10.0, "m": 1000.0}
+
+
+@dataclass(frozen=True)
+class Holds:
+    """What a format has a place for, beside positions on one side.
+
+    Parameters
+    ----------
+    pairs
+        Both sides in one file.
+    names
+        A name for each landmark, not only its place in the order.
+    notes, locks, switches
+        A landmark's note, whether it is locked, and whether it is enabled.
+    curves, patches
+        Points that belong to a curve, or to a patch.
+    frame, unit
+        The only ones that its positions can be in; empty where it says none.
+    """
+
+    pairs: bool = False
+    names: bool = True
+    notes: bool = False
+    locks: bool = False
+    switches: bool = False
+    curves: bool = False
+    patches: bool = False
+    frame: str = ""
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class Outgoing:
+    """What is written to a landmark file.
+
+    Parameters
+    ----------
+    landmarks
+        Their names different.
+    side
+        The side to write, or None for pairs.
+    unit
+        The unit the positions are in; empty where it is not known.
+    title
+        What the specimen is called, where the format has a place for it.
+    groups
+        The curves and patches that some of the landmarks are points of; what the format has no
+        place for is left out before.
+    """
+
+    landmarks: tuple[Landmark, ...]
+    side: Side | None = Side.SOURCE
+    unit: str = ""
+    title: str = ""
+    groups: tuple[ReadGroup, ...] = ()
+
+    @property
+    def places(self) -> list[Position | None]:
+        """Where each landmark lies on the side that is written.
+
+        Examples
+        --------
+        >>> Outgoing((Landmark("a", (1.0, 2.0, 3.0)), Landmark("b"))).places
+        [(1.0, 2.0, 3.0), None]
+        """
+        assert self.side is not None, "pairs are refused before"
+        return [landmark.position(self.side) for landmark in self.landmarks]
+
+    @property
+    def title_or_side(self) -> str:
+        """What the specimen is called, or else the side."""
+        return self.title or (self.side.value if self.side is not None else "pairs")
 
 
 @dataclass(frozen=True)
@@ -90,6 +165,80 @@ def left_out(count: int, one: str, many: str) -> tuple[str, ...]:
     if count == 1:
         return (f"1 landmark that {one} was left out.",)
     return (f"{count} landmarks that {many} were left out.",)
+
+
+def lost(holds: Holds, outgoing: Outgoing) -> tuple[str, ...]:
+    """Say what of the landmarks a format has no place for.
+
+    Parameters
+    ----------
+    holds
+        What it has a place for.
+    outgoing
+        All that is there.
+
+    Returns
+    -------
+    tuple of str
+        A sentence for each kind. What becomes of landmarks without a position, each format
+        says itself.
+
+    Examples
+    --------
+    >>> lost(Holds(), Outgoing((Landmark("a", (1, 2, 3), note="worn"),)))
+    ('The format has no place for notes: those of a were left out.',)
+    """
+    marks = outgoing.landmarks
+    notes = []
+    if not holds.names and marks:
+        notes.append("The format has no names for landmarks: only their order was kept.")
+    for has_place, what, names in (
+        (holds.notes, "notes: those of", [x.name for x in marks if x.note]),
+        (holds.locks, "locks: those of", [x.name for x in marks if x.locked]),
+        (
+            holds.switches,
+            "what is disabled: the switches of",
+            [
+                x.name
+                for x in marks
+                # Half a pair takes no part in any case.
+                if not x.enabled and (outgoing.side is not None or x.is_complete)
+            ],
+        ),
+    ):
+        if names and not has_place:
+            were = "were left out"
+            notes.append(f"The format has no place for {what} {some_of(names)} {were}.")
+    if passengers := [x.name for x in marks if x.role is Role.PASSENGER]:
+        what = counted(len(passengers), "passenger")
+        notes.append(
+            f"The format has no passengers: {what} ({some_of(passengers)}) became landmarks."
+        )
+    left = [x.name for x in outgoing.groups if not (holds.curves if x.is_curve else holds.patches)]
+    if left:
+        notes.append(f"{some_of(left)}: points of curves and patches were taken for landmarks.")
+    return tuple(notes)
+
+
+def names_of_one_word(names: Iterable[str]) -> tuple[list[str], tuple[str, ...]]:
+    """Return names without blanks, each there once, and a note where some had any.
+
+    Examples
+    --------
+    >>> names_of_one_word(["left tragus", "left_tragus"])
+    (['left_tragus', 'left_tragus_2'], ('2 names with blanks got underscores.',))
+    """
+    taken: dict[str, None] = {}
+    changed = 0
+    for name in names:
+        stem = free = "_".join(one_line(name).split()) or "_"
+        count = 2
+        while free in taken:
+            free, count = f"{stem}_{count}", count + 1
+        taken[free] = None
+        changed += free != name
+    notes = f"{counted(changed, 'name')} with blanks got underscores."
+    return list(taken), (notes,) if changed else ()
 
 
 def numbers_text(position: Sequence[float] | None, missing: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pinwarp.io.landmark_formats.lines import one_line
+from pinwarp.io.landmark_formats import morphologika, tps
 from pinwarp.io.landmark_formats.writing import numbers_text
 from pinwarp.io.semilandmark_formats.points import OutputFile, PointSet
 
@@ -40,23 +40,14 @@ def morphologika_files(points: PointSet, title: str) -> tuple[list[OutputFile], 
     """Return the file of Morphologika, curves as its wireframe."""
     rows = [numbers_text(place, "NA") for _, place in points.places]
     wires = [f"{a + 1} {b + 1}" for curve in points.curves for a, b in curve.steps]
-    sections = {
-        "individuals": ["1"],
-        "landmarks": [str(len(rows))],
-        "dimensions": ["3"],
-        "names": [title],
-        "rawpoints": [f"'#1 {title}", *rows],
-    }
-    if wires:
-        sections["wireframe"] = wires
-    lines = [line for name, body in sections.items() for line in (f"[{name}]", *body)]
-    return [OutputFile(".morphologika.txt", "\r\n".join([*lines, ""]))], [ONLY_ORDER]
+    text = morphologika.specimen_text(rows, title, wires)
+    return [OutputFile(".morphologika.txt", text)], [ONLY_ORDER]
 
 
 def tps_text(points: PointSet, title: str) -> str:
     """Return a specimen of the tps programs, every point a landmark."""
     rows = [numbers_text(place, "NA") for _, place in points.places]
-    return "\n".join([f"LM3={len(rows)}", *rows, f"ID={one_line(title)}", ""])
+    return tps.specimen_text(rows, [], title)
 
 
 def tps_curves_files(points: PointSet, title: str) -> tuple[list[OutputFile], list[str]]:
@@ -65,14 +56,12 @@ def tps_curves_files(points: PointSet, title: str) -> tuple[list[OutputFile], li
     Each holds the landmarks it is anchored to; a closed one ends where it begins.
     """
     rows = [numbers_text(place, "NA") for _, place in points.places]
-    lines = [f"LM3={points.landmarks}", *rows[: points.landmarks]]
-    if points.curves:
-        lines.append(f"CURVES={len(points.curves)}")
-    for curve in points.curves:
-        along = [*curve.rows, *curve.rows[: int(curve.is_closed)]]
-        lines += [f"POINTS={len(along)}", *(rows[row] for row in along)]
-    lines += [f"ID={one_line(title)}", ""]
+    curves = [
+        [rows[row] for row in (*curve.rows, *curve.rows[: int(curve.is_closed)])]
+        for curve in points.curves
+    ]
+    text = tps.specimen_text(rows[: points.landmarks], curves, title)
     notes = [ONLY_ORDER]
     if left := len(points.on_surfaces):
         notes.append(f"The format has no patches: {left:,} points were left out. They are in .tps.")
-    return [OutputFile(".curves.tps", "\n".join(lines))], notes
+    return [OutputFile(".curves.tps", text)], notes

@@ -90,7 +90,7 @@ def convert_landmarks(
         if is_session(source)
         else read_landmarks(source, side or Side.SOURCE)
     )
-    if reading.is_pairs and side is None and not target.HOLDS_PAIRS:
+    if reading.is_pairs and side is None and not target.HOLDS.pairs:
         raise PinwarpError(
             f"{source.name} holds both sides, and {target.NAME} holds one: "
             "choose it by --side source or --side destination."
