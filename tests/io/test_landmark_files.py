@@ -25,8 +25,6 @@ from pinwarp.io.landmark_formats import (
     mni_tag,
     nts,
     opensim_creator,
-    particles,
-    slicer_fcsv,
 )
 from pinwarp.io.template import read_template
 
@@ -35,8 +33,6 @@ from .landmark_formats.examples import EXAMPLES, IDAV, SLICER_JSON, Example
 
 PAIR_FORMATS = [known for known in FORMATS if known.HOLDS.pairs]
 NAMED = [known for known in FORMATS if known.HOLDS.names]
-# What is not placed is left out, where there is no word for it.
-WITHOUT_EMPTY = (opensim_creator, slicer_fcsv, mni_tag, amira, blank_table, particles)
 # What becomes of blanks in a name, where they stand between two words of a line.
 BLANKS: dict[LandmarkFormat, str] = {idav: "_", nts: "_", blank_table: " "}
 ODD_NAMES = ["=1+1", "'=1+1", "-5", "@b", 'say "a"', "a, b", "Höcker ✓", "a\\b", "<&>", "#1", "1"]
@@ -149,7 +145,7 @@ def expected_side(
     known: LandmarkFormat, landmarks: list[Landmark], side: Side
 ) -> list[tuple[str, str]]:
     """Name and position, exact to the last bit, as the format can hold them."""
-    if known in WITHOUT_EMPTY:
+    if not known.HOLDS.empty:
         landmarks = [x for x in landmarks if x.position(side)]
     marks = [(x.name, repr(x.position(side))) for x in landmarks]
     if not known.HOLDS.names:

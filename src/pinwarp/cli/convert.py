@@ -12,23 +12,35 @@ from pinwarp.cli.telling import refuse_existing, tell_notes
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.core.words import counted
-from pinwarp.io.file_names import is_session
-from pinwarp.io.landmark_files import LANDMARK_SUFFIXES, format_of
+from pinwarp.io.file_names import as_file_name, is_session
+from pinwarp.io.landmark_files import LANDMARK_SUFFIXES, format_of, located
 from pinwarp.io.semilandmark_files import (
     SEMILANDMARK_SUFFIXES,
     format_of_semilandmarks,
     semilandmark_files,
     write_all,
 )
-from pinwarp.session.importing.conversion import convert_landmarks
+from pinwarp.session.importing.conversion import (
+    Conversion,
+    Meant,
+    convert_landmarks,
+    convert_specimens,
+)
 from pinwarp.session.keeping.files import read_session
 from pinwarp.session.outputs.replacing import refuse_to_replace
 from pinwarp.session.outputs.semilandmarks import semilandmarks_on
 
+ALL = "all"
+
 
 def convert(
     source: Annotated[
-        Path, typer.Argument(metavar="IN", help="A landmark file of any format, or a session.")
+        Path,
+        typer.Argument(
+            metavar="IN",
+            help="A landmark file of any format, or a session. Of several specimens FILE#NAME or "
+            "FILE#NUMBER takes one, FILE#all each, to OUT_NAME.",
+        ),
     ],
     output: Annotated[Path, typer.Argument(metavar="OUT", help="The file to write.")],
     to: Annotated[
@@ -54,6 +66,14 @@ def convert(
             show_default=False,
         ),
     ] = "",
+    frame: Annotated[
+        str,
+        typer.Option(
+            metavar="LPS|RAS",
+            help="The frame of IN, where it does not say: 3D Slicer's files are in LPS.",
+            show_default=False,
+        ),
+    ] = "",
     semilandmarks: Annotated[
         bool,
         typer.Option(
@@ -69,12 +89,30 @@ def convert(
     if semilandmarks:
         _with_semilandmarks(source, output, to, side, force)
         return
-    refuse_to_replace([source], [output])
-    refuse_existing([output], force)
+    file, which = located(source)
     known = None if to is None else format_of(f"landmarks.{to.lower().removeprefix('.')}")
-    done = convert_landmarks(source, output, side=side, known=known, unit=unit)
-    tell_notes(done.notes, source.name)
-    typer.echo(f"{output}: {counted(done.count, 'landmark')}, {done.read_as} to {done.written_as}")
+    meant = Meant(unit, frame, landmarks=force)
+
+    def convert_one(one: Path, out: Path) -> Conversion:
+        refuse_to_replace([file], [out])
+        refuse_existing([out], force)
+        return convert_landmarks(one, out, side=side, known=known, meant=meant)
+
+    if which == ALL:
+        done = convert_specimens(file, lambda name: _beside(output, name), convert_one)
+    else:
+        done = {output: convert_one(source, output)}
+    for path, one in done.items():
+        tell_notes(one.notes, source.name)
+        typer.echo(f"{path}: {counted(one.count, 'landmark')}, {one.read_as} to {one.written_as}")
+        if not which and one.specimens > 1:
+            tell_notes([f"{file.name}#NAME takes another, {file.name}#{ALL} each."])
+
+
+def _beside(output: Path, specimen: str) -> Path:
+    """Return the file of a specimen: called as the output is, its name in front of the suffix."""
+    stem, dot, suffix = output.name.partition(".")
+    return output.with_name(f"{stem}_{as_file_name(specimen)}{dot}{suffix}")
 
 
 def _with_semilandmarks(

@@ -22,7 +22,7 @@ from pinwarp.io.text import filled_lines
 
 NAME = "Amira .landmarkAscii"
 SUFFIXES = (".landmarkascii", ".landascii")
-HOLDS = Holds(pairs=True, names=False)
+HOLDS = Holds(pairs=True, names=False, empty=False)
 
 _SIGNATURE = re.compile(r"#\s*(AmiraMesh|Avizo|HyperMesh)\b[^\n\r]*", re.IGNORECASE)
 _COUNT = re.compile(r"define\s+Markers\s+(\d{1,9})", re.IGNORECASE)

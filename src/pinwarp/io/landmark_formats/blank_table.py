@@ -16,7 +16,7 @@ from pinwarp.io.landmark_formats.writing import Holds, Outgoing, Written, number
 
 NAME = "Table between blanks"
 SUFFIXES = (".xyz",)
-HOLDS = Holds()
+HOLDS = Holds(empty=False)
 
 # Everything else would be taken for more than one cell, or a comment.
 _PLAIN = re.compile(r"\w[^\s\"#,;]*")

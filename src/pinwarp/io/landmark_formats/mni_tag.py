@@ -23,7 +23,7 @@ from pinwarp.io.text import filled_lines
 
 NAME = "MNI .tag"
 SUFFIXES = (".tag",)
-HOLDS = Holds(pairs=True)
+HOLDS = Holds(pairs=True, empty=False)
 
 _SIGNATURE = "MNI Tag Point File"
 _VOLUMES = re.compile(r"volumes\s*=\s*([^;]*);?$", re.IGNORECASE)

@@ -16,7 +16,7 @@ from pinwarp.io.landmark_formats.writing import Holds, Outgoing, Written, placed
 
 NAME = "OpenSim Creator CSV"
 SUFFIXES = (".csv", ".txt")
-HOLDS = Holds(pairs=True)
+HOLDS = Holds(pairs=True, empty=False)
 
 _SIDE_HEADER = ("name", "x", "y", "z")
 _PAIRS_HEADER = ("name", "source.x", "source.y", "source.z", "dest.x", "dest.y", "dest.z")

@@ -12,7 +12,7 @@ from pinwarp.io.landmark_formats.writing import Holds, Outgoing, Written, number
 
 NAME = "ShapeWorks particles"
 SUFFIXES = (".particles",)
-HOLDS = Holds(names=False)
+HOLDS = Holds(names=False, empty=False)
 
 
 def read(path: str | Path, text: str, side: Side) -> LandmarkReading:

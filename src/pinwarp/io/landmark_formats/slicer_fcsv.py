@@ -21,7 +21,7 @@ from pinwarp.io.text import lines_of
 
 NAME = "3D Slicer .fcsv"
 SUFFIXES = (".fcsv",)
-HOLDS = Holds(notes=True, locks=True, switches=True, frame="LPS", unit="mm")
+HOLDS = Holds(empty=False, notes=True, locks=True, switches=True, frame="LPS", unit="mm")
 
 _HEADER = (
     "# Markups fiducial file version = 4.11\n"

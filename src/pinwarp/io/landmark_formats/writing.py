@@ -24,6 +24,8 @@ class Holds:
         Both sides in one file.
     names
         A name for each landmark, not only its place in the order.
+    empty
+        A landmark that is not placed.
     notes, locks, switches
         A landmark's note, whether it is locked, and whether it is enabled.
     curves, patches
@@ -34,6 +36,7 @@ class Holds:
 
     pairs: bool = False
     names: bool = True
+    empty: bool = True
     notes: bool = False
     locks: bool = False
     switches: bool = False
