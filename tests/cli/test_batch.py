@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 from tests.session.study import bone, make_study, shape
 
-from pinwarp.core.landmarks import Side
-from pinwarp.io.landmark_files import read_landmarks
+from pinwarp.core.landmarks import Side, scaled
+from pinwarp.io.landmark_files import read_landmarks, write_landmarks
 from pinwarp.io.meshes import read_mesh
 from pinwarp.session.keeping.files import read_session, write_session
 from pinwarp.session.session import Session
@@ -430,3 +430,61 @@ def test_what_was_done_stays_when_a_batch_is_stopped(tmp_path, ending):
     assert {row["status"] for row in rows.values()} == {"done"}
     assert told.startswith(f"{len(rows)} done, 0 unchanged, 0 failed of 300")
     assert not [path for path in out.iterdir() if path.name.startswith(".")]
+
+
+def test_landmarks_in_another_frame_or_unit_have_a_column_of_their_own(run, study, out):
+    placed = read_landmarks(study / "s1.csv", Side.DESTINATION).landmarks
+    write_landmarks(study / "s1.csv", scaled(placed, 0.001), Side.DESTINATION)
+    run()
+    rows = rows_of(out)
+    assert rows["s0"]["frame_or_unit"] == ""
+    assert rows["s1"]["frame_or_unit"] == "destination: Multiply by 1,000?"
+    assert "The destination landmarks lie" in rows["s1"]["findings"]
+
+
+def as_tps(study, *numbers):
+    """The subjects' landmarks as the specimens of one file, and the source's names by its rows."""
+    texts = []
+    for number in numbers:
+        path = study / "one.tps"
+        marks = read_landmarks(study / f"s{number}.csv", Side.DESTINATION).landmarks
+        write_landmarks(path, marks, Side.DESTINATION)
+        texts.append(path.read_text().replace("ID=one", f"ID=s{number}"))
+    (study / "all.tps").write_text("".join(texts))
+    source = study / "source.csv"
+    source.write_text(source.read_text().replace("\np", "\nlandmark_"))
+
+
+def test_specimens_of_one_file_are_subjects_by_name_or_all(pinwarp_command, study, out):
+    as_tps(study, 0, 1, 2)
+    manifest = study / "study.csv"
+    manifest.write_text("name,destination_landmarks\none,all.tps#s1\nby,all.tps#all\n")
+    source = ("--source", study / "source.ply", "--source-landmarks", study / "source.csv")
+    command = ("batch", manifest, "-o", out, *source, "--jobs", 1)
+    assert "4 done, 0 unchanged, 0 failed of 4" in pinwarp_command(*command).stdout
+    rows = rows_of(out)
+    assert list(rows) == ["one", "by_s0", "by_s1", "by_s2"]
+    one, other = (read_mesh(out / f"{x}_warped.ply").mesh for x in ("one", "by_s1"))
+    assert np.array_equal(one.vertices, other.vertices)
+    assert "4 unchanged" in pinwarp_command(*command).stdout
+
+
+def test_both_sides_may_come_from_two_specimens_of_one_file(pinwarp_command, study, out):
+    as_tps(study, 0, 1)
+    manifest = study / "study.csv"
+    manifest.write_text("name,destination_landmarks\none,all.tps#s1\n")
+    source = ("--source", study / "s0.stl", "--source-landmarks", study / "all.tps#s0")
+    pinwarp_command("batch", manifest, "-o", out, *source, "--jobs", 1)
+    assert rows_of(out)["one"]["pairs"] == "8"
+
+
+def test_all_specimens_need_rows_of_their_own_where_they_have_meshes(run, study, out):
+    as_tps(study, 0, 1)
+    manifest = study / "study.csv"
+    manifest.write_text(
+        "name,destination_landmarks,destination_mesh\na,all.tps#all,s0.stl\nb,s0.csv#all,\n"
+    )
+    run(exit_code=1)
+    rows = rows_of(out)
+    assert "write a row for each, all.tps#NAME" in rows["a"]["error"]
+    assert "s0.csv holds no specimens: leave out '#all'" in rows["b"]["error"]

@@ -8,9 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pinwarp.core.landmarks import Landmark, as_position
+from pinwarp.core.landmarks import Landmark, Side, as_position
 from pinwarp.io.meshes import read_mesh
+from pinwarp.io.samples import sample_session
 from pinwarp.session import edits
+from pinwarp.session.importing.fit import Fit, fitted
 from pinwarp.session.keeping.files import read_session, write_session
 from pinwarp.session.session import Session
 
@@ -148,3 +150,14 @@ def test_what_is_no_session_is_told_on_one_line(pinwarp_command, tmp_path, text,
     assert outcome.stderr.startswith("pinwarp: a.pinwarp.csv: ")
     assert words in outcome.stderr
     assert outcome.stderr.count("\n") == 1
+
+
+def test_landmarks_in_another_frame_or_unit_are_flagged(pinwarp_command, tmp_path):
+    path = tmp_path / "femur.pinwarp.csv"
+    sample = read_session(sample_session())
+    write_session(path, fitted(sample, Side.DESTINATION, Fit(flips=True)))
+    outcome = pinwarp_command("check", path, "--strict", exit_code=1)
+    assert "! The destination landmarks lie" in outcome.stdout
+    assert "with x and y negated" in " ".join(outcome.stdout.split())
+    write_session(path, sample)
+    assert "another frame" not in pinwarp_command("check", path, "--strict").stdout

@@ -308,6 +308,29 @@ def test_positions_can_be_kept_as_stored(half_done, bring):
     assert destinations(half_done) == [x.destination for x in spoilt]
 
 
+def test_what_was_kept_is_listed_to_check_until_a_click_puts_it_right(half_done, bring):
+    def keep(dialog):
+        choose(dialog.fits[DESTINATION][0])
+        press(dialog)
+
+    bring(LPS.applied(half_done.pairs, DESTINATION), DESTINATION, keep)
+    half_done.settle()
+    panel = half_done.window.parts.findings.panel
+    row = panel.rows[0]
+    assert "The destination landmarks lie" in row.found.sentence
+    assert "another frame or unit" in row.found.sentence
+    assert row.remedy.text() == "Negate x and y"
+    assert row.disable.isHidden()
+    QTest.mouseClick(row.remedy, Qt.MouseButton.LeftButton)
+    half_done.settle()
+    right = [x.destination for x in half_done.pairs]
+    assert np.allclose(destinations(half_done), right, atol=1e-9)
+    assert not any("another frame" in row.found.sentence for row in panel.rows)
+    half_done.trigger("undo")
+    half_done.settle()
+    assert "another frame" in panel.rows[0].found.sentence
+
+
 def test_pairs_are_judged_on_either_side(user, bring):
     user.open_sample()
     pairs = [x for x in user.session.landmarks if x.is_pair]

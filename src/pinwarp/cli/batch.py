@@ -18,7 +18,7 @@ from pinwarp.core.groups import Curve
 from pinwarp.core.landmarks import Landmark, Role, Side
 from pinwarp.core.pose import Mirror, PoseSettings
 from pinwarp.core.words import listed
-from pinwarp.io.landmark_files import read_landmarks
+from pinwarp.io.landmark_files import located, read_landmarks
 from pinwarp.io.manifest import read_manifest
 from pinwarp.io.meshes import read_mesh
 from pinwarp.session import edits
@@ -27,6 +27,7 @@ from pinwarp.session.keeping.files import read_session
 from pinwarp.session.session import Session
 from pinwarp.session.study import batch as batches
 from pinwarp.session.study.scheduler import address_of
+from pinwarp.session.study.specimens import with_specimens
 from pinwarp.session.warp.refining import RefinementOptions
 
 
@@ -36,8 +37,9 @@ def batch(
         typer.Argument(
             metavar="MANIFEST.csv",
             help="One row for each subject: name, destination_landmarks and, where wanted, "
-            "destination_mesh, penalty, components. Paths are seen from its folder. With "
-            "--suggest destination_landmarks may be empty.",
+            "destination_mesh, penalty, components. Paths are seen from its folder. Of landmarks "
+            "of several specimens FILE#NAME takes one, FILE#all each. With --suggest "
+            "destination_landmarks may be empty.",
         ),
     ],
     out: Annotated[
@@ -115,10 +117,11 @@ def batch(
     known = PoseSettings(mirror, partial)
     if known != PoseSettings() and not suggest:
         raise PinwarpError("--mirror and --partial are about suggesting: add --suggest.")
-    subjects = read_manifest(manifest, suggested=suggest)
+    subjects = with_specimens(read_manifest(manifest, suggested=suggest))
     shared = _source(source, source_landmarks, passengers, session)
     shared = with_options(shared, penalty, components, blend)
-    given = [path for path in (source_landmarks, passengers, session) if path is not None]
+    files = (source_landmarks, passengers, session)
+    given = [located(path)[0] for path in files if path is not None]
     tasks = batches.plan(
         subjects,
         shared,

@@ -35,7 +35,8 @@ def check(
         typer.Option(
             "--strict",
             help="Exit with 1 where pairs look wrong (suspect, inconsistent, swapped, mirrored, "
-            "in conflict) or the warp folds.",
+            "in conflict), landmarks are in another frame or unit than their mesh, or the warp "
+            "folds.",
         ),
     ] = False,
 ) -> None:

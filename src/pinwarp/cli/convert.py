@@ -13,7 +13,7 @@ from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.core.words import counted
 from pinwarp.io.file_names import as_file_name, is_session
-from pinwarp.io.landmark_files import LANDMARK_SUFFIXES, format_of, located
+from pinwarp.io.landmark_files import ALL, LANDMARK_SUFFIXES, format_of, located
 from pinwarp.io.semilandmark_files import (
     SEMILANDMARK_SUFFIXES,
     format_of_semilandmarks,
@@ -29,8 +29,6 @@ from pinwarp.session.importing.conversion import (
 from pinwarp.session.keeping.files import read_session
 from pinwarp.session.outputs.replacing import refuse_to_replace
 from pinwarp.session.outputs.semilandmarks import semilandmarks_on
-
-ALL = "all"
 
 
 def convert(

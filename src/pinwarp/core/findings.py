@@ -47,6 +47,7 @@ class FindingKind(StrEnum):
     SWAPPED = "swapped"
     MIRRORED = "mirrored"
     SUGGESTED = "suggested"
+    ELSEWHERE = "elsewhere"
 
     @property
     def severity(self) -> Severity:
@@ -82,11 +83,13 @@ class Finding:
         fold the number of its vertices. For inconsistent landmarks their distance on the source,
         for a suspect its standardised leave-one-out error, for an isolated landmark the distance
         to the nearest, for swapped or mirrored ones the share of the error that is left when that
-        is put right, for suggested destinations how many there are.
+        is put right, for suggested destinations how many there are. For landmarks elsewhere, in
+        another frame or unit than their mesh, the median distance from it.
     others
         Further figures: for inconsistent landmarks their distance on the destination, for a
         suspect or isolated landmark its leave-one-out error (mesh units), for suggested
-        destinations of how many they are.
+        destinations of how many they are, for landmarks elsewhere their distance when they are
+        read right.
     """
 
     kind: FindingKind
@@ -175,6 +178,11 @@ class Finding:
                 return (
                     f"{self.value:.0f} of {counted(int(self.others[0]), 'destination landmark')} "
                     f"{verb} only suggested: look at {each}."
+                )
+            case FindingKind.ELSEWHERE:
+                return (
+                    f"The landmarks lie {length} from their mesh in the median, but {other} when "
+                    "they are read in another frame or unit."
                 )
 
 

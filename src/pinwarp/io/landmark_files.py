@@ -49,6 +49,9 @@ __all__ = [
     "write_landmarks",
 ]
 
+ALL = "all"
+"""Behind a file: every specimen of it."""
+
 # Far more than anybody clicks; a larger file is another kind of file, and would fill the memory.
 _LARGEST = 8 << 20
 _HEAD = 1 << 16

@@ -36,6 +36,7 @@ COLUMNS = (
     "status",
     "verdict",
     *NUMBERS,
+    "frame_or_unit",
     "findings",
     "notes",
     "error",

@@ -25,6 +25,7 @@ from qtpy.QtWidgets import (
 from pinwarp.core.findings import FindingKind
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.icons import icon
+from pinwarp.session.judging.elsewhere import Elsewhere
 from pinwarp.session.judging.quality import NamedFinding
 
 # Both of these may be wrong; of others one is enough.
@@ -44,6 +45,7 @@ class FindingRow(QFrame):
     chosen = Signal()
     swap_requested = Signal()
     mirror_requested = Signal()
+    reading_requested = Signal()
     disable_requested = Signal(list)
 
     def __init__(self) -> None:
@@ -91,6 +93,9 @@ class FindingRow(QFrame):
         elif kind is FindingKind.MIRRORED and mirror_axis:
             remedy = f"Mirror Across {mirror_axis.upper()}"
             tip = f"Mirror the source across {mirror_axis}: a left bone becomes a right one"
+        elif isinstance(found, Elsewhere):
+            remedy = found.fit.action
+            tip = f"Read all {found.side.value} landmarks another way; their mesh stays"
         self._show_button(self.remedy, remedy, tip)
         self._show_button(
             self.disable,
@@ -140,6 +145,8 @@ class FindingRow(QFrame):
     def _on_remedy(self) -> None:
         if self.found is not None and self.found.finding.kind is FindingKind.SWAPPED:
             self.swap_requested.emit()
+        elif isinstance(self.found, Elsewhere):
+            self.reading_requested.emit()
         else:
             self.mirror_requested.emit()
 
@@ -208,6 +215,7 @@ class FindingsPanel(QWidget):
     chosen = Signal(object)
     swap_requested = Signal(object)
     mirror_requested = Signal(str)
+    reading_requested = Signal(object)
     disable_requested = Signal(object, list)
 
     def __init__(self) -> None:
@@ -285,6 +293,7 @@ class FindingsPanel(QWidget):
         row.chosen.connect(lambda: self.chosen.emit(row.found))
         row.swap_requested.connect(lambda: self.swap_requested.emit(row.found))
         row.mirror_requested.connect(lambda: self.mirror_requested.emit(self._axis))
+        row.reading_requested.connect(lambda: self.reading_requested.emit(row.found))
         row.disable_requested.connect(lambda names: self.disable_requested.emit(row.found, names))
 
     def show_selection(self, names: Sequence[str]) -> None:

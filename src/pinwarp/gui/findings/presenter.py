@@ -15,13 +15,17 @@ from pinwarp.gui.placing.bone_edits import BoneEdits
 from pinwarp.gui.placing.hand import Hand
 from pinwarp.gui.placing.reviewing import Reviewing
 from pinwarp.gui.table.presenter import TablePresenter
+from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.gui.views.controls import ViewControls
 from pinwarp.gui.warp.quality import QualityPresenter
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
+from pinwarp.session.importing.fit import fitted
+from pinwarp.session.judging.elsewhere import Elsewhere, MeshGuard
 from pinwarp.session.judging.quality import NamedFinding, Quality, named_findings
 from pinwarp.session.judging.suggested import about_suggested
 from pinwarp.session.naming import in_words
+from pinwarp.session.session import Session
 from pinwarp.session.warp.pair_names import pair_names
 
 # These are about the penalty and the solve, and told where the penalty is set.
@@ -77,6 +81,11 @@ class FindingsPresenter(Capability):
         self._undo_key = undo_key
         self._say = say
         self._found: tuple[NamedFinding, ...] = ()
+        self._astray: tuple[Elsewhere, ...] = ()
+        self._looked_at: object = None
+        self._guard = LatestWins(_looked)
+        self._guard.computed.connect(self._on_looked)
+        self._meshes = MeshGuard()
         self._shown_for: object = None
         self._next = Action(
             "next_finding",
@@ -95,6 +104,7 @@ class FindingsPresenter(Capability):
         self.panel.chosen.connect(self._choose)
         self.panel.swap_requested.connect(self._swap)
         self.panel.mirror_requested.connect(bones.mirror)
+        self.panel.reading_requested.connect(self._read_otherwise)
         self.panel.disable_requested.connect(self._disable)
         maps.survey_shown.connect(self.fold_note.show_survey)
         quality.quality_changed.connect(self._on_quality)
@@ -105,6 +115,7 @@ class FindingsPresenter(Capability):
 
     def shut_down(self) -> None:
         """Let go of the editor and the figures."""
+        self._guard.shut_down()
         self._source.quality_changed.disconnect(self._on_quality)
         self._maps.folds_changed.disconnect(self._on_folds)
         self._maps.survey_shown.disconnect(self.fold_note.show_survey)
@@ -124,8 +135,29 @@ class FindingsPresenter(Capability):
         if self._editor.is_previewing:
             # Names do not change in a drag, and its figures come by themselves.
             return
+        self._look()
         self._show()
         self._on_selection()
+
+    def _look(self) -> None:
+        """Ask whether landmarks lie on their meshes, where either is another than before."""
+        session = self._editor.committed
+        places = tuple((x.source, x.destination) for x in session.landmarks)
+        key = (places, session.source, session.destination, session.unit)
+        if key != self._looked_at:
+            self._looked_at = key
+            self._guard.request((self._meshes, session, key))
+
+    def _on_looked(self, found: tuple[object, tuple[Elsewhere, ...]]) -> None:
+        key, astray = found
+        if key == self._looked_at and astray != self._astray:
+            self._astray = astray
+            self._show()
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether the landmarks were compared with their meshes as they are now."""
+        return self._guard.is_idle
 
     def _show(self) -> None:
         session, quality, survey = self._editor.session, self._source.quality, self._maps.survey
@@ -133,7 +165,8 @@ class FindingsPresenter(Capability):
         folds = survey.findings if survey is not None else ()
         judged = survey.result.inputs if survey is not None else None
         places = (judged.source, judged.destination) if judged is not None else None
-        key = (session.landmarks, session.unit, session.source, quality, folds, places)
+        astray = self._astray
+        key = (session.landmarks, session.unit, session.source, quality, folds, places, astray)
         if key == self._shown_for:
             return
         self._shown_for = key
@@ -141,7 +174,7 @@ class FindingsPresenter(Capability):
         if judged is not None:
             found += named_findings(folds, judged, session)
         # Folds come behind what causes them, what is only isolated last.
-        found = gravest_first((*found, *about_suggested(session)))
+        found = gravest_first((*astray, *found, *about_suggested(session)))
         self._found = tuple(one for one in found if one.finding.kind not in _TOLD_ELSEWHERE)
         self._table.model.show_findings(
             # What is suggested has its sign as a state.
@@ -195,9 +228,20 @@ class FindingsPresenter(Capability):
         if self._is_current(found):
             self._hand.swap_destinations(found.names)
 
+    def _read_otherwise(self, found: Elsewhere) -> None:
+        if found in self._astray:
+            session = fitted(self._editor.committed, found.side, found.fit)
+            self._editor.commit(session, f"Correct {found.side.value} landmarks")
+            self._say(f"{found.fit.describe()}: {self._undo_key} undoes it.")
+
     def _disable(self, found: NamedFinding, names: Sequence[str]) -> None:
         if self._is_current(found):
             session = edits.set_enabled(self._editor.committed, names, False)
             self._editor.commit(session, f"Disable {in_words(names)}")
             takes = "takes" if len(names) == 1 else "take"
             self._say(f"{in_words(names)} no longer {takes} part: {self._undo_key} undoes it.")
+
+
+def _looked(asked: tuple[MeshGuard, Session, object]) -> tuple[object, tuple[Elsewhere, ...]]:
+    guard, session, key = asked
+    return key, guard.look(session)

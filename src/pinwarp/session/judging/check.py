@@ -10,10 +10,12 @@ import numpy as np
 
 from pinwarp.core.findings import FindingKind, Severity, gravest_first
 from pinwarp.core.groups import Curve
+from pinwarp.core.landmarks import Side
 from pinwarp.core.lengths import rms
 from pinwarp.core.names import look_alike_notes
-from pinwarp.core.surface_distance import DistanceFigures
+from pinwarp.core.surface_distance import DistanceFigures, SurfaceIndex
 from pinwarp.io.meshes import MeshFile
+from pinwarp.session.judging.elsewhere import Elsewhere, elsewhere
 from pinwarp.session.judging.quality import NamedFinding, named_findings, quality_of
 from pinwarp.session.judging.suggested import about_suggested
 from pinwarp.session.session import Session
@@ -96,6 +98,9 @@ class Check:
         distance proves little; None where none were.
     groups
         The curves and patches whose semilandmarks slid.
+    elsewhere
+        The sides whose landmarks seem to be in another frame or unit than their mesh; they are
+        among the findings, too.
     findings
         What was noticed, the gravest first; what is wrong is flagged.
     notes
@@ -121,6 +126,7 @@ class Check:
     findings: tuple[NamedFinding, ...]
     notes: tuple[str, ...] = ()
     groups: tuple[GroupFigures, ...] = ()
+    elsewhere: tuple[Elsewhere, ...] = ()
 
     @property
     def freed(self) -> int | None:
@@ -165,7 +171,7 @@ class Check:
         }
 
 
-def check(session: Session | SolvedWarp) -> Check:
+def check(session: Session | SolvedWarp, source_index: SurfaceIndex | None = None) -> Check:
     """Judge the warp of a session: its pairs, and what it does to the meshes that are there.
 
     Parameters
@@ -173,6 +179,8 @@ def check(session: Session | SolvedWarp) -> Check:
     session
         Folds are looked for where its source mesh is there, distances measured where both are.
         Or its warp, solved.
+    source_index
+        The surface of its source mesh, where it is ready for measuring.
 
     Raises
     ------
@@ -204,7 +212,11 @@ def check(session: Session | SolvedWarp) -> Check:
     if folds is not None:
         patches = (patch.finding for patch in folds.patches)
         findings += named_findings(patches, result.inputs, session)
+    indexes = {Side.SOURCE: source_index, Side.DESTINATION: warp.destination_index}
+    astray = elsewhere(session, indexes)
+    findings += astray
     return Check(
+        elsewhere=astray,
         pairs=tuple(
             PairFigures(name, *(float(x) for x in row))
             for name, row in zip(names, np.column_stack(columns), strict=True)

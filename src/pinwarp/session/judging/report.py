@@ -19,6 +19,7 @@ from pinwarp.io.meshes import MeshFile
 from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.io.report import Report, ReportRow
 from pinwarp.session.judging.check import groups_of
+from pinwarp.session.judging.elsewhere import elsewhere
 from pinwarp.session.judging.quality import Quality, quality_of
 from pinwarp.session.judging.suggested import about_suggested
 from pinwarp.session.session import Session
@@ -86,12 +87,16 @@ def report_of(
     # Folds come behind what causes them, what is only isolated last.
     suggested = (named.finding for named in about_suggested(session))
     found = gravest_first((*quality.findings, *suggested, *patches))
+    astray = elsewhere(session, {Side.DESTINATION: warp.destination_index})
     return Report(
         title=title,
         made=f"Made by pinwarp {__version__} on {made:%d %B %Y at %H:%M} "
         f"(Python {platform.python_version()}, numpy {np.__version__})",
         facts=_facts(session, result),
-        findings=tuple(finding.describe(names, unit) for finding in found),
+        findings=(
+            *(one.sentence for one in astray),
+            *(finding.describe(names, unit) for finding in found),
+        ),
         figures=(
             *_of_pairs(warp, quality),
             *_of_groups(result, unit),

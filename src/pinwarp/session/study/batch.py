@@ -15,6 +15,7 @@ from pinwarp.core.groups import on_source_only
 from pinwarp.core.landmarks import Role
 from pinwarp.core.pose import PoseSettings
 from pinwarp.core.settings import WarpSettings
+from pinwarp.io.landmark_files import located
 from pinwarp.io.manifest import Manifest, Subject
 from pinwarp.io.meshes import MESH_SUFFIXES
 from pinwarp.io.osim.bone import mesh_suffix
@@ -148,7 +149,8 @@ def plan(
 
     Examples
     --------
-    >>> from pinwarp.io.manifest import Subject
+    >>> from pinwarp.io.landmark_files import located
+    from pinwarp.io.manifest import Subject
     >>> from pinwarp.io.samples import sample_session
     >>> from pinwarp.session.keeping.files import read_session
     >>> anna = Subject("anna", 2, Path("/study/anna.csv"), penalty=0.5)
@@ -213,7 +215,7 @@ def plan(
     read = [manifest.path, source.source.path, *inputs]
     for task in tasks:
         files = (task.subject.destination_landmarks, task.subject.destination_mesh)
-        read += [path for path in files if path is not None]
+        read += [located(path)[0] for path in files if path is not None]
     refuse_to_replace(read, [folder / SUMMARY, *(path for task in tasks for path in task.outputs)])
     return tasks
 
@@ -396,6 +398,9 @@ def _row(task: Task, result: Outcome | Exception) -> SummaryRow:
         | {"status": DONE}
         | _digits(figures)
         | {
+            "frame_or_unit": " ".join(
+                f"{one.side.value}: {one.fit.action}?" for one in checked.elsewhere
+            ),
             "findings": " ".join(named.sentence for named in checked.findings),
             "notes": " ".join((*result.notes, *checked.notes)),
         }

@@ -9,12 +9,13 @@ from collections.abc import Sequence
 from dataclasses import astuple, dataclass, replace
 from pathlib import Path
 
-from pinwarp.core.errors import FileFormatError, PinwarpError, words_of
+from pinwarp.core.errors import FileFormatError, PinwarpError, RangeError, words_of
 from pinwarp.core.landmarks import Landmark, Role, Side
 from pinwarp.core.names import look_alike_notes
+from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.core.words import counted, some_of
 from pinwarp.io.group_record import METHOD as SLIDING_METHOD
-from pinwarp.io.landmark_files import LandmarkReading, read_landmarks, write_landmarks
+from pinwarp.io.landmark_files import LandmarkReading, located, read_landmarks, write_landmarks
 from pinwarp.io.manifest import Subject
 from pinwarp.io.meshes import MeshFile, read_mesh, write_mesh
 from pinwarp.io.osim.bone import read_any_mesh
@@ -154,7 +155,9 @@ def _warp(task: Task) -> tuple[Check, tuple[str, ...], FirstPass | None]:
     if task.refinement is None and warp.result.not_sliding is not None:
         # Where the others are warped with semilandmarks, one without would not be comparable.
         raise PinwarpError(warp.result.not_sliding)
-    checked = check(warp)
+    reference = task.session.source
+    known = _source_index(reference) if isinstance(reference, MeshReference) else None
+    checked = check(warp, known)
     write_mesh(task.mesh, warped_mesh(warp))
     if task.passengers is not None:
         write_landmarks(task.passengers, warped_passengers(warp), Side.DESTINATION)
@@ -187,6 +190,14 @@ def _source(reference: MeshReference) -> MeshFile:
     if file.sha256 != reference.sha256:
         raise FileFormatError(file.path, "The source mesh changed meanwhile. Run the batch again.")
     return as_seen(file, reference)
+
+
+@functools.lru_cache(maxsize=1)
+def _source_index(reference: MeshReference) -> SurfaceIndex | None:
+    try:
+        return SurfaceIndex(_source(reference).mesh)
+    except RangeError:
+        return None
 
 
 def with_destinations(
@@ -326,7 +337,11 @@ def content_hash(manifest: Path, line: int, path: Path | None) -> str:
     """
     if path is None:
         return ""
+    # Of a file of several specimens, each is another input.
+    path, specimen = located(path)
     found = hash_of(path)
+    if found is not None and specimen:
+        return f"{found}#{specimen}"
     if found is None:
         words = "cannot be read." if path.exists() else "is not there. Was it moved or renamed?"
         raise FileFormatError(manifest, f"The file {path} {words}", line)

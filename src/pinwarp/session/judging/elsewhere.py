@@ -1,0 +1,111 @@
+"""Landmarks in another frame or unit than their mesh: what checks, reports and the window say."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from pinwarp.core.errors import RangeError
+from pinwarp.core.findings import Finding, FindingKind
+from pinwarp.core.landmarks import Side
+from pinwarp.core.mesh import Mesh
+from pinwarp.core.surface_distance import SurfaceIndex
+from pinwarp.session.importing.fit import Fit, fits_of
+from pinwarp.session.judging.quality import NamedFinding
+from pinwarp.session.mesh_units import unit_on
+from pinwarp.session.session import Session
+
+
+@dataclass(frozen=True)
+class Elsewhere(NamedFinding):
+    """A finding that the landmarks of a side do not lie on its mesh, but would if read otherwise.
+
+    Attributes
+    ----------
+    side
+        The side.
+    fit
+        How they would have to be read.
+    """
+
+    side: Side
+    fit: Fit
+
+
+def elsewhere(
+    session: Session, indexes: Mapping[Side, SurfaceIndex | None] = MappingProxyType({})
+) -> tuple[Elsewhere, ...]:
+    """Return what is noticed about the landmarks of either side and their mesh.
+
+    Parameters
+    ----------
+    session
+        A side without its mesh, or without landmarks, is not looked at.
+    indexes
+        The surfaces of meshes that are ready for measuring.
+
+    Examples
+    --------
+    >>> from pinwarp.io.samples import sample_session
+    >>> from pinwarp.session.importing.fit import fitted
+    >>> from pinwarp.session.keeping.files import read_session
+    >>> session = read_session(sample_session())
+    >>> elsewhere(session)
+    ()
+    >>> (found,) = elsewhere(fitted(session, Side.SOURCE, Fit(flips=True)))
+    >>> found.side.value, found.fit.action
+    ('source', 'Negate x and y')
+    """
+    found = []
+    for side in Side:
+        mesh = session.mesh(side)
+        if mesh is None or all(x.position(side) is None for x in session.landmarks):
+            continue
+        index = indexes.get(side)
+        if index is None or index.mesh is not mesh:
+            index = _index_of(mesh)
+        if index is None:
+            continue
+        stored, *others = fits_of(session.landmarks, side, index) or (Fit(),)
+        if not others:
+            continue
+        fit = others[0]
+        unit = unit_on(session, side)
+        words = fit.describe()
+        sentence = (
+            f"The {side.value} landmarks lie {stored.distance:.3g} {unit} from their mesh in the "
+            f"median, but {fit.distance:.3g} {unit} {words[0].lower()}{words[1:]}: they are in "
+            "another frame or unit."
+        )
+        finding = Finding(FindingKind.ELSEWHERE, (), stored.distance, (fit.distance,))
+        found.append(Elsewhere(finding, (), sentence, side, fit))
+    return tuple(found)
+
+
+class MeshGuard:
+    """Looks whether landmarks lie on their meshes, which it makes ready for measuring once.
+
+    For use by one thread at a time.
+    """
+
+    def __init__(self) -> None:
+        self._indexes: dict[Side, SurfaceIndex] = {}
+
+    def look(self, session: Session) -> tuple[Elsewhere, ...]:
+        """Return what is noticed; see :func:`elsewhere`."""
+        for side in Side:
+            mesh, known = session.mesh(side), self._indexes.get(side)
+            if mesh is None or known is None or known.mesh is not mesh:
+                self._indexes.pop(side, None)
+                if mesh is not None and (index := _index_of(mesh)):
+                    self._indexes[side] = index
+        return elsewhere(session, self._indexes)
+
+
+def _index_of(mesh: Mesh) -> SurfaceIndex | None:
+    try:
+        return SurfaceIndex(mesh)
+    except RangeError:
+        # Nothing can be measured there, as whoever asks for distances is told.
+        return None
