@@ -217,7 +217,6 @@ def test_what_had_come_to_rest_of_other_points_is_not_written(tmp_path: Path) ->
         (r"points=1 name=whole", "points=9999 name=whole", "more than 5000 points"),
         (r"name=whole", "name=cap", "two groups are called 'cap'"),
         (r"closed=1", "closed=2", "closed of 'ring' is neither 0 nor 1"),
-        (r"closed=1 ", "", "closed of 'ring' is neither 0 nor 1"),
         (r"destination=drawn", "destination=maybe", "destination of 'ring' is 'maybe'"),
         (r"excluded=1", "excluded=7", "has no point 8"),
         (r"inside=0.5/0.25", "inside=0.25", "inside of 'cap' is no position"),

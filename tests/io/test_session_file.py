@@ -38,6 +38,7 @@ EXAMPLE = """\
 # treat_as_planar: yes
 # camera: 1, 2; 3
 # a remark
+# landmarks: 3
 name,role,enabled,source_x,source_y,source_z,destination_x,destination_y,destination_z,note,colour
 lateral_epicondyle,pair,1,0.482677,-0.034081,0.147277,-0.09938,-0.28054,-0.0003,,red
 glmed_r_p2,passenger,1,0.087685,-0.094538,0.114963,,,,"a ""note"", two
@@ -277,29 +278,31 @@ def test_changes_by_hand_that_change_nothing_are_read(
         ("# pinwarp-session: 1\n", "name,x,y,z\n", "not a pinwarp session"),
         ("session: 1", "session: one", "line 1: The version 'one'"),
         ("session: 1", "session: 0", "line 1: The version '0'"),
-        (" vertices=456", "", "line 2: A mesh is given as"),
+        (" vertices=456", " vertices=many", "line 2: A mesh is given as"),
+        ("landmarks: 3", "landmarks: few", "line 10: The number of landmarks is 'few'"),
+        ("half,pair,0,,,,1,2,3,,\n", "", "It announces 3 landmarks and holds 2: was it cut off"),
         ("0.0042", "-0.0042", "line 4: The warping penalty -0.0042 is negative"),
         ("0.0042", "nan", "line 4: 'nan' is not a finite number"),
         ("0.0042", "much", "line 4: 'much' is not a number"),
         ("opynsim", "other", "line 5: The convention 'other'"),
         ("# unit: m\n", "# unit: m\n# unit: mm\n", "line 7: Unit is given twice"),
         ("planar: yes", "planar: maybe", "line 7: Treat_as_planar is 'maybe'"),
-        ("destination_y,", "", "line 10: The column 'destination_y' is missing"),
-        ("note,colour", "note,note", "line 10: Two columns"),
-        ("lateral_epicondyle,pair", "lateral_epicondyle,friend", "line 11: The role 'friend'"),
-        ("lateral_epicondyle,pair,1", "lateral_epicondyle,pair,2", "line 11: 'enabled' is '2'"),
-        ("lateral_epicondyle,pair", " ,pair", "line 11: A landmark needs a name"),
-        ("-0.034081", "", "line 11: A number is missing"),
-        ("-0.034081", "x", "line 11: 'x' is not a number"),
-        ("-0.034081", "inf", "line 11: 'inf' is not a finite number"),
-        ("-0.034081", "1e400", "line 11: '1e400' is not a finite number"),
-        (",,red", ",,red,blue", "line 11: The row has 12 cells for 11 columns"),
-        ('"a ""note""', '"a "note""', "line 12: The quotes do not match"),
-        ('lines",', "lines,", "line 12: The quotes do not match"),
-        ("half", "glmed_r_p2", "line 14: The name 'glmed_r_p2' was used before"),
-        (",1,2,3,,\n", ",1,2", "line 14: The row ends after 8 of 11 cells"),
-        (",1,2,3,,\n", ",1,2\n", "line 14: A number is missing"),
-        ("half,pair,0,,,,1,2,3,,\n", "half", "line 14: The row ends after 1 of 11"),
+        ("destination_y,", "", "line 11: The column 'destination_y' is missing"),
+        ("note,colour", "note,note", "line 11: Two columns"),
+        ("lateral_epicondyle,pair", "lateral_epicondyle,friend", "line 12: The role 'friend'"),
+        ("lateral_epicondyle,pair,1", "lateral_epicondyle,pair,2", "line 12: 'enabled' is '2'"),
+        ("lateral_epicondyle,pair", " ,pair", "line 12: A landmark needs a name"),
+        ("-0.034081", "", "line 12: A number is missing"),
+        ("-0.034081", "x", "line 12: 'x' is not a number"),
+        ("-0.034081", "inf", "line 12: 'inf' is not a finite number"),
+        ("-0.034081", "1e400", "line 12: '1e400' is not a finite number"),
+        (",,red", ",,red,blue", "line 12: The row has 12 cells for 11 columns"),
+        ('"a ""note""', '"a "note""', "line 13: The quotes do not match"),
+        ('lines",', "lines,", "line 13: The quotes do not match"),
+        ("half", "glmed_r_p2", "line 15: The name 'glmed_r_p2' was used before"),
+        (",1,2,3,,\n", ",1,2", "line 15: The row ends after 8 of 11 cells"),
+        (",1,2,3,,\n", ",1,2\n", "line 15: A number is missing"),
+        ("half,pair,0,,,,1,2,3,,\n", "half", "line 15: The row ends after 1 of 11"),
         (EXAMPLE[EXAMPLE.index("name,") :], "", "table of landmarks is missing"),
     ],
 )
@@ -339,7 +342,7 @@ def test_a_row_that_was_cut_off_before_its_last_cell_is_refused(tmp_path: Path) 
     text = EXAMPLE[: EXAMPLE.index("glmed_r_p2")]
     start, last_comma = text.index("lateral"), text.rindex(",")
     for end in range(start + 1, last_comma + 1):
-        with pytest.raises(FileFormatError, match=r"line 11: The row ends after \d+ of 11"):
+        with pytest.raises(FileFormatError, match=r"line 12: The row ends after \d+ of 11"):
             read_session(save(tmp_path, text[:end]))
 
 
@@ -473,3 +476,64 @@ def test_a_damaged_refinement_is_refused_not_half_read(
     path.write_text(text)
     with pytest.raises(FileFormatError, match=words):
         read_session(path)
+
+
+# Written by hand or by a script
+
+
+def test_a_session_needs_no_more_than_paths_names_and_places(tmp_path: Path) -> None:
+    text = (
+        "# pinwarp-session: 1\n# source_mesh: left femur.stl\n# destination_mesh: subject.stl\n"
+        "name,source_x,source_y,source_z,destination_x,destination_y,destination_z\n"
+        "fovea,1,2,3,4,5,6\nnotch,7,8,9,,,\n"
+    )
+    record = read_session(save(tmp_path, text))
+    assert record.source_mesh == MeshReference(tmp_path / "left femur.stl")
+    assert record.landmarks == (
+        Landmark("fovea", (1, 2, 3), (4, 5, 6)),
+        Landmark("notch", (7, 8, 9)),
+    )
+    assert (record.settings, record.unit) == (WarpSettings(), "mm")
+
+
+def test_a_side_may_be_left_out_but_no_coordinate(tmp_path: Path) -> None:
+    text = "# pinwarp-session: 1\nname,source_x,source_y,source_z\nfovea,1,2,3\n"
+    assert read_session(save(tmp_path, text)).landmarks == (Landmark("fovea", (1, 2, 3)),)
+    with pytest.raises(FileFormatError, match="column 'source_z' is missing"):
+        read_session(save(tmp_path, text.replace(",source_z", "").replace(",3", "")))
+    with pytest.raises(FileFormatError, match="column 'source_x' is missing"):
+        read_session(save(tmp_path, "# pinwarp-session: 1\nname\nfovea\n"))
+
+
+@pytest.mark.parametrize("said", ["", " sha256=ab12", " vertices=456", " sha256=ab vertices=4"])
+@pytest.mark.parametrize("name", ["a.stl", "a=b sha256=x vertices=1", " sha256=", "a vertices=4"])
+def test_what_is_said_of_a_mesh_comes_back_and_no_more(
+    tmp_path: Path, name: str, said: str
+) -> None:
+    words = dict(word.split("=") for word in said.split())
+    mesh = MeshReference(tmp_path / name, words.get("sha256", ""), int(words.get("vertices", 0)))
+    path = tmp_path / "a.pinwarp.csv"
+    write_session(path, SessionRecord(source_mesh=mesh))
+    assert path.read_text().splitlines()[1].endswith(said)
+    assert read_session(path).source_mesh == mesh
+
+
+def test_a_curve_is_open_and_of_twenty_points_where_nobody_says(tmp_path: Path) -> None:
+    text = (
+        "# pinwarp-session: 2\n# curve: name=crest\n"
+        "name,role,source_x,source_y,source_z\n"
+        "crest 1,handle,1,2,3\ncrest 2,handle,4,5,6\n"
+    )
+    (curve,) = read_session(save(tmp_path, text)).groups
+    assert (curve.name, curve.count, curve.is_closed) == ("crest", 20, False)
+
+
+def test_a_file_cut_off_between_two_rows_is_noticed_and_rows_may_be_added(tmp_path: Path) -> None:
+    path = tmp_path / "a.pinwarp.csv"
+    write_session(path, SessionRecord(tuple(Landmark(f"p{n}", (n, 2, 3)) for n in range(4))))
+    lines = path.read_text().splitlines(keepends=True)
+    path.write_text("".join(lines[:-1]))
+    with pytest.raises(FileFormatError, match="announces 4 landmarks and holds 3: was it cut off"):
+        read_session(path)
+    path.write_text("".join([*lines, lines[-1].replace("p3", "p4")]))
+    assert len(read_session(path).landmarks) == 5

@@ -21,6 +21,8 @@ Matrix = NDArray[np.float64]
 
 MOST_POINTS = 5000
 """No group has more points: sliding them would take minutes."""
+USUAL_COUNT = 20
+"""How many points a curve has where nobody says."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from pinwarp.core.errors import LandmarkError
-from pinwarp.core.groups import MOST_POINTS, Curve, Group, Handle, Patch
+from pinwarp.core.groups import MOST_POINTS, USUAL_COUNT, Curve, Group, Handle, Patch
 from pinwarp.core.landmarks import Position
 from pinwarp.io.csv_cells import number_of, shortened
 
@@ -176,14 +176,16 @@ def groups_of(
         if key == "patch_around":
             raise ValueError(f"there is no patch inside the curve {shortened(text)}")
         values = _values(key, text)
-        name, count = values["name"], _count(values, key)
+        name = values["name"]
+        count = _count(values, key) if "points" in values else None
         if name in names:
             raise ValueError(f"two groups are called {shortened(name)}")
         names.add(name)
         if key == "curve":
             handles = _numbered(of_group.pop((GroupRole.HANDLE, name), {}), None, name)
             points = of_group.pop((GroupRole.CURVE, name), {})
-            groups.append(_curve(name, count, values, handles))
+            usual = USUAL_COUNT if count is None else count
+            groups.append(_curve(name, usual, values, handles))
             own = _used_rows(groups[-1], points) if points else []
         else:
             own = _numbered(of_group.pop((GroupRole.SURFACE, name), {}), count, name)
@@ -274,7 +276,8 @@ def _placed(row: GroupRow) -> Position:
 
 
 def _curve(name: str, count: int, values: Mapping[str, str], rows: Sequence[GroupRow]) -> Curve:
-    if values.get("closed") not in ("0", "1"):
+    closed = values.get("closed", "0")
+    if closed not in ("0", "1"):
         raise ValueError(f"closed of {shortened(name)} is neither 0 nor 1")
     if values.get("destination", "drawn") != "drawn":
         found = shortened(values["destination"])
@@ -283,7 +286,7 @@ def _curve(name: str, count: int, values: Mapping[str, str], rows: Sequence[Grou
     excluded = frozenset(map(int, re.findall("[0-9]{1,7}", values.get("excluded", ""))))
     try:
         drawn = "destination" in values
-        return Curve(name, handles, values["closed"] == "1", count, excluded, drawn)
+        return Curve(name, handles, closed == "1", count, excluded, drawn)
     except LandmarkError as error:
         raise ValueError(f"the curve {error}") from None
 

@@ -10,6 +10,7 @@ from pinwarp.core.errors import FileFormatError, LandmarkError
 from pinwarp.core.groups import Group
 from pinwarp.core.landmarks import Landmark, duplicate_names
 from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
+from pinwarp.core.words import counted
 from pinwarp.io.atomic import write_atomically
 from pinwarp.io.csv_cells import as_sentence, shortened
 from pinwarp.io.csv_text import LONGEST_CELL
@@ -131,6 +132,8 @@ def write_session(path: str | Path, record: SessionRecord, *, relative_meshes: b
     # Every header entry stays on its line, whatever it says.
     entries = [" ".join(f"# {key}: {text}".splitlines()).rstrip() for key, text in header]
     entries += [f"# {key}: {text}" if key else f"# {text}" for key, text in record.unknown]
+    # Just above the table: a file that is cut off between two rows of it looks whole.
+    entries.append(f"# landmarks: {len(record.landmarks)}")
     lines = [header_line(entry) for entry in entries]
     lines += table_lines(record.landmarks, fitted, group_rows(record.groups, record.slid))
     write_atomically(path, "".join(lines))
@@ -170,6 +173,16 @@ def read_session(path: str | Path) -> SessionRecord:
     separator = max(",;\t", key=lines[top].count) if top < len(lines) else ","
     known, unknown = read_values(path, read_header(path, lines[:top], separator))
     landmarks, fitted, rows = read_table(path, lines[top:], top + 1, separator)
+    announced = known.pop("announced", 0)
+    # Rows that somebody added are welcome.
+    if len(landmarks) < announced:
+        raise FileFormatError(
+            path,
+            f"It announces {counted(announced, 'landmark')} and holds {len(landmarks)}: was it cut "
+            f"off? {CORRECT} If rows were taken out on purpose, correct '# landmarks: "
+            f"{announced}'.",
+            len(lines),
+        )
     try:
         groups, slid = groups_of(known.pop("groups", ()), rows)
     except ValueError as error:

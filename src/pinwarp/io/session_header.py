@@ -34,6 +34,7 @@ _FIELDS = {
     "destination_scaled": "destination_scaled",
     "unit": "unit",
     "refine": "refinement",
+    "landmarks": "announced",
 }
 """The field of a session record, or of one of its meshes, that each known key fills."""
 GROUP_KEYS = frozenset({"curve", "patch", "patch_around", "slid"})
@@ -218,7 +219,9 @@ def read_values(
     return known, tuple(unknown)
 
 
-def _value(key: str, text: str, folder: Path) -> MeshReference | RefinementRecord | float | str:
+def _value(
+    key: str, text: str, folder: Path
+) -> MeshReference | RefinementRecord | float | int | str:
     """Read the text of one line, or raise a ValueError with the reason."""
     match key:
         case "source_mesh" | "destination_mesh":
@@ -229,8 +232,16 @@ def _value(key: str, text: str, folder: Path) -> MeshReference | RefinementRecor
             return _factor(key, text)
         case "refine":
             return refinement_of(text)
+        case "landmarks":
+            return _count(text)
         case _:
             return text
+
+
+def _count(text: str) -> int:
+    if not re.fullmatch("[0-9]{1,9}", text):
+        raise ValueError(f"the number of landmarks is {shortened(text)}, which is none")
+    return int(text)
 
 
 def _axes(key: str, text: str) -> str:

@@ -22,6 +22,8 @@ from pinwarp.io.session_header import CORRECT
 _SOURCE = ("source_x", "source_y", "source_z")
 _DESTINATION = ("destination_x", "destination_y", "destination_z")
 _COLUMNS = ("name", "role", "enabled", *_SOURCE, *_DESTINATION, "note")
+# What a table that somebody wrote by hand may leave out, and what is meant then.
+_DEFAULTS = {"role": Role.PAIR.value, "enabled": "1", "note": ""}
 # Only there where some landmark is locked.
 _LOCKED = "locked"
 _KNOWN = (*_COLUMNS, _LOCKED)
@@ -107,14 +109,15 @@ def read_table(
         raise FileFormatError(
             path, f"The table of landmarks is missing: the file was cut off. {CORRECT}"
         )
-    columns = _read_columns(path, rows[0])
+    ends = lines[-1].endswith(("\n", "\r"))
+    columns = _read_columns(path, rows[0], len(rows) == 1 and not ends)
     landmarks: dict[str, Landmark] = {}
     fitted: list[Pair] = []
     grouped: list[GroupRow] = []
     for row in rows[1:]:
         if row.is_blank:
             continue
-        is_cut_off = row is rows[-1] and not lines[-1].endswith(("\n", "\r"))
+        is_cut_off = row is rows[-1] and not ends
         try:
             values = _values(row, columns, is_cut_off)
             role = values["role"].strip().lower()
@@ -133,11 +136,16 @@ def read_table(
     return tuple(landmarks.values()), tuple(fitted), tuple(grouped)
 
 
-def _read_columns(path: str | Path, row: Row) -> tuple[str, ...]:
+def _read_columns(path: str | Path, row: Row, is_cut_off: bool) -> tuple[str, ...]:
     cells = [formula_unquoted(cell.strip()) for cell in row.cells]
     columns = tuple(cell.lower() if cell.lower() in _KNOWN else cell for cell in cells)
     problem = row.problem
-    if missing := [column for column in _COLUMNS if column not in columns]:
+    # Somebody who writes it by hand may leave out a side, but never one of its coordinates.
+    sides = [side for side in (_SOURCE, _DESTINATION) if set(side) & set(columns)]
+    needed = {"name", *(column for side in sides or [_SOURCE] for column in side)}
+    if is_cut_off:
+        needed = set(_COLUMNS)
+    if missing := [x for x in _COLUMNS if x in needed and x not in columns]:
         problem = f"the column {missing[0]!r} is missing"
     named = [column for column in columns if column]
     if len(set(named)) < len(named):
@@ -158,7 +166,8 @@ def _values(row: Row, columns: Sequence[str], is_cut_off: bool) -> dict[str, str
     cells = (*cells, *[""] * (len(columns) - len(cells)))
     if any(cell.strip() for cell in cells[len(columns) :]):
         raise ValueError(f"the row has {len(cells)} cells for {len(columns)} columns")
-    values = dict(zip(columns, cells, strict=False))
+    values = {**_DEFAULTS, **dict.fromkeys((*_SOURCE, *_DESTINATION), "")}
+    values |= dict(zip(columns, cells, strict=False))
     if values.get("", "").strip():
         raise ValueError("a cell is filled in a column without a name")
     return values
@@ -187,7 +196,7 @@ def _grouped(values: dict[str, str], separator: str) -> GroupRow:
 
 def _landmark(values: dict[str, str], columns: Sequence[str], separator: str) -> Landmark:
     """Make a landmark of one row, or raise a ValueError with the reason."""
-    role = values["role"].strip().lower()
+    role = values["role"].strip().lower() or Role.PAIR.value
     if role not in {known.value for known in Role}:
         raise ValueError(f"the role {shortened(role)} is neither 'pair' nor 'passenger'")
     # An empty cell means enabled, and not locked: a landmark as it begins.

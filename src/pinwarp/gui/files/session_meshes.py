@@ -174,7 +174,7 @@ class SessionMeshes:
             reference = opening.references[side]
             if file.path.parent != reference.path.parent:
                 moved.append(f"{file.path.name} was found in {file.path.parent}")
-            is_same = not reference.sha256 or file.sha256 == reference.sha256
+            is_same = reference.is_of(file.sha256, len(file.mesh.vertices))
             if not is_same and side not in opening.accepted:
                 changes.append(_change(side, file, reference))
         alike = look_alike_notes(landmark.name for landmark in opening.record.landmarks)
@@ -191,11 +191,14 @@ class SessionMeshes:
 
 def _change(side: Side, file: MeshFile, reference: MeshReference) -> str:
     now = len(file.mesh.vertices)
-    count = (
-        f"it still has {now:,} vertices, though not the same file content"
-        if now == reference.vertices
-        else f"it had {reference.vertices:,} vertices and has {now:,} now"
-    )
+    if not reference.vertices:
+        count = "it is another file"
+    else:
+        count = (
+            f"it still has {now:,} vertices, though not the same file content"
+            if now == reference.vertices
+            else f"it had {reference.vertices:,} vertices and has {now:,} now"
+        )
     return (
         f"The {side.value} mesh {file.path.name} is not as it was when the session was saved: "
         f"{count}."

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinwarp.core.errors import LandmarkError
-from pinwarp.core.groups import MOST_POINTS, Curve, Group, Handle, Patch
+from pinwarp.core.groups import MOST_POINTS, USUAL_COUNT, Curve, Group, Handle, Patch
 from pinwarp.core.landmarks import Position, Side, as_position
 from pinwarp.core.words import counted
 from pinwarp.io.landmark_files import LandmarkReading
@@ -19,7 +19,6 @@ from pinwarp.session.session import Session
 
 # A place lies at a landmark where it is off by no more than this share of the landmarks' reach.
 AT_LANDMARK = 1e-6
-USUAL_COUNT = 20
 
 
 def with_groups(
