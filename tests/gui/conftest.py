@@ -20,6 +20,7 @@ from pinwarp.gui.app import make_application
 from pinwarp.gui.files.file_dialogs import Answer, OpenTwice, Overwrite
 from pinwarp.gui.files.lost_work_dialog import LostAnswer
 from pinwarp.gui.importing.dialog import ImportDialog
+from pinwarp.gui.importing.specimen_dialog import SpecimenDialog
 from pinwarp.gui.tasks.dialogs import Existing
 from pinwarp.gui.window.main_window import MainWindow
 from pinwarp.io.samples import assets_folder, sample_session
@@ -60,6 +61,7 @@ class ScriptedDialogs:
         self.overwrite_questions: list[tuple[str, str]] = []
         # What a user does with each import dialog that opens; it is rejected after that.
         self.at_import: list[Callable[[ImportDialog], None]] = []
+        self.at_specimen: list[Callable[[SpecimenDialog], None]] = []
         self.choices: list[int] = []
         self.choice_questions: list[tuple[str, str, str, list[str]]] = []
         self.errors: list[tuple[str, str]] = []
@@ -107,8 +109,16 @@ class ScriptedDialogs:
 
     def ask_import(self, session, arriving):
         assert self.at_import, "nobody expected to be asked about an import"
-        use = self.at_import.pop(0)
         dialog = ImportDialog(session, arriving, QApplication.activeWindow())
+        return dialog.choice if self._is_accepted(dialog, self.at_import.pop(0)) else None
+
+    def ask_specimen(self, arriving):
+        assert self.at_specimen, "nobody expected to be asked for a specimen"
+        dialog = SpecimenDialog(arriving, QApplication.activeWindow())
+        return dialog.chosen if self._is_accepted(dialog, self.at_specimen.pop(0)) else None
+
+    def _is_accepted(self, dialog, use):
+        """Show a dialog, use it as a test wants, and say how it was left."""
 
         def act():
             try:
@@ -120,7 +130,7 @@ class ScriptedDialogs:
         QTimer.singleShot(50, dialog, act)
         accepted = dialog.exec()
         dialog.deleteLater()
-        return dialog.choice if accepted else None
+        return accepted
 
     def ask_choice(self, title, text, more, labels):
         self.choice_questions.append((title, text, more, list(labels)))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from qtpy.QtCore import QPoint, Qt, QTimer
 from qtpy.QtTest import QTest
-from qtpy.QtWidgets import QApplication, QDialogButtonBox
+from qtpy.QtWidgets import QApplication, QDialogButtonBox, QLabel
 from tests.gui.test_files import drop
 
 from pinwarp.core.landmarks import Landmark, Side, scaled
@@ -576,3 +576,94 @@ def test_lengths_in_the_table_say_their_unit_and_follow_it(user):
     assert title("Residual") == "Residual\ncm"
     index = model.index(0, 1)
     assert model.data(index, Qt.ItemDataRole.ToolTipRole).endswith(") cm")
+
+
+# Several specimens in one file
+
+
+@pytest.fixture
+def two_femurs(half_done, tmp_path):
+    """One TPS file: both bones of the sample as specimens."""
+    texts = []
+    for side in (SOURCE, DESTINATION):
+        path = tmp_path / f"{side.value}.tps"
+        write_landmarks(path, half_done.pairs, side, unit="mm")
+        texts.append(path.read_text())
+    path = tmp_path / "femurs.tps"
+    path.write_text("".join(texts))
+    return path
+
+
+def mark(dialog, name):
+    """Click a specimen in the list."""
+    names = dialog.specimens
+    (item,) = names.findItems(name, Qt.MatchFlag.MatchExactly)
+    place = names.visualItemRect(item).center()
+    QTest.mouseClick(names.viewport(), Qt.MouseButton.LeftButton, pos=place)
+
+
+def test_a_click_says_which_specimen_of_a_file_is_meant(half_done, two_femurs):
+    def choose_specimen(dialog):
+        words = " ".join(label.text() for label in dialog.findChildren(QLabel))
+        assert "femurs.tps holds 2 specimens. Which one are the destination landmarks of?" in words
+        assert dialog.chosen == "source"
+        mark(dialog, "destination")
+        assert dialog.chosen == "destination"
+        press(dialog)
+
+    def look(dialog):
+        words = " ".join(label.text() for label in dialog.findChildren(QLabel))
+        assert "16 landmarks of destination in femurs.tps" in words
+        assert dialog.fits == {}
+        press(dialog)
+
+    half_done.dialogs.opens = [two_femurs]
+    half_done.dialogs.at_specimen = [choose_specimen]
+    half_done.dialogs.at_import = [look]
+    half_done.trigger("import_destination")
+    half_done.settle()
+    assert half_done.dialogs.at_import == []
+    assert destinations(half_done) == [x.destination for x in half_done.pairs]
+
+
+def test_both_sides_come_from_two_specimens_of_one_file(half_done, two_femurs):
+    half_done.editor.replace_all(replace(half_done.session, landmarks=()), None)
+    for side in (SOURCE, DESTINATION):
+
+        def choose_specimen(dialog, name=side.value):
+            mark(dialog, name)
+            press(dialog)
+
+        half_done.dialogs.opens = [two_femurs]
+        half_done.dialogs.at_specimen = [choose_specimen]
+        half_done.trigger(f"import_{side.value}")
+        half_done.settle()
+    assert [(x.source, x.destination) for x in half_done.session.landmarks] == [
+        (x.source, x.destination) for x in half_done.pairs
+    ]
+
+
+def test_without_a_specimen_nothing_is_imported(half_done, two_femurs):
+    before = half_done.session
+    half_done.dialogs.opens = [two_femurs]
+    half_done.dialogs.at_specimen = [lambda dialog: press(dialog, CANCEL)]
+    half_done.trigger("import_destination")
+    half_done.settle()
+    assert half_done.session == before
+
+
+def test_what_may_be_no_landmarks_is_asked_about_before_it_comes_in(half_done, tmp_path):
+    log = tmp_path / "imu.csv"
+    log.write_text("time,x,y,z\n" + "".join(f"{n},{n},2,3\n" for n in range(120)))
+
+    def look(dialog):
+        words = [label.text() for label in dialog.findChildren(QLabel)]
+        assert "Are these landmarks?" in words
+        assert "It has a column 'time', as recordings over time have." in words
+        press(dialog, CANCEL)
+
+    half_done.dialogs.opens = [log]
+    half_done.dialogs.at_import = [look]
+    half_done.trigger("import_destination")
+    half_done.settle()
+    assert half_done.dialogs.at_import == []

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from qtpy.QtCore import QSize, Qt
 from qtpy.QtGui import QIcon
 from qtpy.QtWidgets import (
@@ -35,6 +37,7 @@ from pinwarp.session.importing.landmarks import (
     awaiting,
     can_pair,
     default_pairing,
+    doubts_of,
     group_words,
     left_waiting,
     summary,
@@ -135,6 +138,8 @@ class ImportDialog(QDialog):
         for note in reading.notes:
             head.addWidget(_label(note))
         column.addLayout(head)
+        if doubts := doubts_of(self._session, self._arriving):
+            column.addWidget(self._doubt(doubts))
         for side in self._arriving.doubtful:
             column.addWidget(self._question(side))
         if self._arriving.landmarks:
@@ -157,17 +162,18 @@ class ImportDialog(QDialog):
         column.addWidget(self.buttons)
         self.resize(_SIZE)
 
+    def _doubt(self, doubts: Sequence[str]) -> QWidget:
+        """Return the question whether these are landmarks at all, and why one may ask."""
+        frame, column = _marked()
+        column.addWidget(_label("Are these landmarks?", bold=True))
+        for doubt in doubts:
+            column.addWidget(_label(doubt))
+        return frame
+
     def _question(self, side: Side) -> QWidget:
         """Return the ways to read the positions of a side, with how well each fits."""
         fits = self._arriving.fits[side]
-        frame = QFrame()
-        frame.setObjectName("question")
-        frame.setStyleSheet(
-            f"#question {{ border: none; border-left: 3px solid {theme.WARNING_COLOUR}; }}"
-        )
-        column = QVBoxLayout(frame)
-        column.setContentsMargins(10, 2, 0, 2)
-        column.setSpacing(4)
+        frame, column = _marked()
         unit, mesh = unit_on(self._session, side), self._session.mesh(side)
         size = mesh.diagonal if mesh is not None else 0.0
         far = format_length(fits[0].distance, unit, 3)
@@ -247,13 +253,28 @@ class ImportDialog(QDialog):
         }
 
 
+def _marked() -> tuple[QFrame, QVBoxLayout]:
+    """Return a frame that deserves a look, and the column in it."""
+    frame = QFrame()
+    frame.setObjectName("question")
+    frame.setStyleSheet(
+        f"#question {{ border: none; border-left: 3px solid {theme.WARNING_COLOUR}; }}"
+    )
+    column = QVBoxLayout(frame)
+    column.setContentsMargins(10, 2, 0, 2)
+    column.setSpacing(4)
+    return frame, column
+
+
 def _headline(arriving: Arriving) -> str:
     reading = arriving.reading
     parts = [counted(len(arriving.landmarks), "pair" if reading.is_pairs else "landmark")]
     for is_curve, one, many in ((True, "curve", "curves"), (False, "patch", "patches")):
         if number := sum(group.is_curve is is_curve for group in reading.groups):
             parts.append(counted(number, one, many))
-    return f"{listed(parts if arriving.landmarks else parts[1:])} in {arriving.path.name}"
+    specimen = f" of {reading.specimen}" if len(reading.specimens) > 1 else ""
+    what = listed(parts if arriving.landmarks else parts[1:])
+    return f"{what}{specimen} in {arriving.path.name}"
 
 
 def _understood(reading: LandmarkReading) -> str:

@@ -1,8 +1,9 @@
-"""The question that an import asks."""
+"""The questions that an import asks."""
 
 from __future__ import annotations
 
 from pinwarp.gui.importing.dialog import ImportDialog
+from pinwarp.gui.importing.specimen_dialog import SpecimenDialog
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.session.importing.landmarks import Arriving, ImportChoice
 from pinwarp.session.session import Session
@@ -17,3 +18,10 @@ class ImportDialogs(Dialogs):
         accepted = dialog.exec()
         dialog.deleteLater()
         return dialog.choice if accepted else None
+
+    def ask_specimen(self, arriving: Arriving) -> str | None:
+        """Ask which specimen of a file is meant; None leaves it."""
+        dialog = SpecimenDialog(arriving, self.window)
+        accepted = dialog.exec()
+        dialog.deleteLater()
+        return dialog.chosen if accepted else None

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from pinwarp.core.landmarks import Side
@@ -100,10 +101,13 @@ class LandmarkImports(Capability):
                 return
             self._compare(Arriving(path, reading, None if reading.is_pairs else side), asking)
 
-        chosen = side or Side.SOURCE
-        self._tasks.run(
-            f"Reading {path.name}", lambda _progress: read_landmarks(path, chosen), arrived
-        )
+        self._read(path, side, arrived)
+
+    def _read(
+        self, path: Path, side: Side | None, arrived: Callable[[LandmarkReading], None]
+    ) -> None:
+        title = f"Reading {path.name}"
+        self._tasks.run(title, lambda _progress: read_landmarks(path, side or Side.SOURCE), arrived)
 
     def _compare(self, arriving: Arriving, asking: bool) -> None:
         """Compare positions with the meshes, which were read by now."""
@@ -123,7 +127,7 @@ class LandmarkImports(Capability):
             if not all(self._is_still(side, mesh) for side, mesh in meshes.items()):
                 self._compare(arriving, asking)
                 return
-            found = Arriving(arriving.path, reading, arriving.side, fits)
+            found = replace(arriving, fits=fits)
             self._waiting.append((found, asking))
             self._decide_all()
 
@@ -140,6 +144,9 @@ class LandmarkImports(Capability):
             self._is_deciding = False
 
     def _decide(self, arriving: Arriving, asking: bool) -> None:
+        if asking and arriving.must_choose:
+            self._choose(arriving)
+            return
         session = self._editor.committed
         plain = is_plain(session, arriving)
         choice: ImportChoice | None = ImportChoice(default_pairing(session, arriving))
@@ -155,6 +162,19 @@ class LandmarkImports(Capability):
         self._tasks.said.emit(" ".join(words))
         if not asking:
             self._tell_after(arriving)
+
+    def _choose(self, arriving: Arriving) -> None:
+        """Ask which specimen is meant, and read that one."""
+        name = self._tasks.dialogs.ask_specimen(arriving)
+        if name is None:
+            self._tasks.said.emit("Cancelled; nothing was changed")
+            return
+
+        def arrived(reading: LandmarkReading) -> None:
+            self._compare(replace(arriving, reading=reading, is_chosen=True), True)
+
+        path = arriving.path
+        self._read(path.with_name(f"{path.name}#{name}"), arriving.side, arrived)
 
     def _tell_after(self, arriving: Arriving) -> None:
         """Tell what nobody was asked about before."""
@@ -225,7 +245,7 @@ def _report(arriving: Arriving, choice: ImportChoice) -> str:
         for side, fit in choice.fits.items()
         if not fit.is_as_stored
     ]
-    return ". ".join((*parts, *reading.notes))
+    return ". ".join((*parts, *reading.doubts, *reading.notes))
 
 
 def _count(arriving: Arriving) -> str:

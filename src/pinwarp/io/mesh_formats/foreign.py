@@ -205,6 +205,30 @@ def foreign_in(data: bytes) -> str | None:
     return None
 
 
+def volume_in(data: bytes, name: str) -> str | None:
+    """Return in words what a volume is and the way to a surface; None for all that is no volume.
+
+    Parameters
+    ----------
+    data
+        All bytes of the file, or its first few thousand.
+    name
+        What it is called, which tells where nothing in it does.
+
+    Examples
+    --------
+    >>> volume_in(b"NRRD0004", "skull.any")[:24], volume_in(b"name,x,y,z", "skull.csv")
+    ('This is an NRRD volume: ', None)
+    """
+    small = name.lower()
+    for known in _FOREIGN:
+        signed = known.signature is not None and known.signature.match(data)
+        named = bool(known.suffixes) and small.endswith(known.suffixes) and b"\0" in data
+        if known.way == _SEGMENT and (signed or named):
+            return _words(known)
+    return None
+
+
 def foreign_named(name: str) -> str | None:
     """Return in words what a file is by its name, and the way to a surface.
 

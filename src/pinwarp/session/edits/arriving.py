@@ -7,7 +7,6 @@ from dataclasses import replace
 
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.io.clipboard_table import PastedLandmark
-from pinwarp.session.edits.landmarks import set_enabled
 from pinwarp.session.session import Session
 
 __all__ = [
@@ -20,7 +19,9 @@ __all__ = [
 def import_side(session: Session, side: Side, landmarks: Iterable[Landmark]) -> Session:
     """Bring in positions for one side: by name where the name is known, else as new landmarks.
 
-    A landmark without a position comes as a name to be placed; it takes no position away.
+    A landmark without a position comes as a name to be placed; it takes no position away. Role,
+    note, lock and whether it is enabled are those of the file where it is new; of one that is here
+    only an empty note is filled.
 
     Examples
     --------
@@ -29,31 +30,37 @@ def import_side(session: Session, side: Side, landmarks: Iterable[Landmark]) -> 
     >>> [x.source for x in import_side(session, Side.SOURCE, arriving).landmarks]
     [(1.0, 2.0, 3.0), None]
     """
-    arriving = {landmark.name: landmark.position(side) for landmark in landmarks}
+    arriving = {landmark.name: landmark for landmark in landmarks}
     known = {landmark.name for landmark in session.landmarks}
     merged = tuple(
-        landmark.placed(side, arriving[landmark.name])
-        if arriving.get(landmark.name) is not None
-        else landmark
+        landmark
+        if landmark.name not in arriving
+        else _with_position(landmark, side, arriving[landmark.name])
         for landmark in session.landmarks
     )
     new = tuple(
-        Landmark(name).placed(side, position)
-        for name, position in arriving.items()
+        Landmark(name, role=one.role, enabled=one.enabled, note=one.note, locked=one.locked).placed(
+            side, one.position(side)
+        )
+        for name, one in arriving.items()
         if name not in known
     )
     return replace(session, landmarks=merged + new)
 
 
+def _with_position(landmark: Landmark, side: Side, arriving: Landmark) -> Landmark:
+    """Return a landmark that is here with what arrives of it: what it has itself stays."""
+    position = arriving.position(side)
+    placed = landmark if position is None else landmark.placed(side, position)
+    return placed if landmark.note else replace(placed, note=arriving.note)
+
+
 def import_pairs(session: Session, landmarks: Iterable[Landmark]) -> Session:
     """Bring in pairs: known names get the positions that arrive, others become new landmarks."""
     arriving = tuple(landmarks)
-    known = {landmark.name for landmark in session.landmarks}
     for side in Side:
         session = import_side(session, side, arriving)
-    # A new pair may come switched off; one that is here keeps its state.
-    off = {landmark.name for landmark in arriving if not landmark.enabled} - known
-    return set_enabled(session, off, False)
+    return session
 
 
 def paste(session: Session, rows: Iterable[PastedLandmark]) -> Session:

@@ -17,6 +17,9 @@ from pinwarp.session.importing.groups import with_groups
 from pinwarp.session.naming import free_names, is_automatic
 from pinwarp.session.session import Session
 
+# So many landmarks are seldom placed by hand: where none lies on the mesh they are none.
+MANY = 100
+
 
 class Pairing(StrEnum):
     """How landmarks of a file find those of the session."""
@@ -80,12 +83,20 @@ class Arriving:
     fits
         For each side with a mesh, the ways to read its positions: as they are stored first,
         and others only where they lie much better on the mesh.
+    is_chosen
+        Whether somebody said which of several specimens it is.
     """
 
     path: Path
     reading: LandmarkReading
     side: Side | None
     fits: Mapping[Side, tuple[Fit, ...]] = field(default_factory=dict)
+    is_chosen: bool = False
+
+    @property
+    def must_choose(self) -> bool:
+        """Whether the file holds several specimens, and nobody said which."""
+        return len(self.reading.specimens) > 1 and not self.is_chosen
 
     @property
     def landmarks(self) -> tuple[Landmark, ...]:
@@ -253,6 +264,35 @@ def _renamed(session: Session, arriving: Arriving, choice: ImportChoice) -> list
     return [replace(x, name=name) for x, name in zip(landmarks, targets, strict=True)]
 
 
+def doubts_of(session: Session, arriving: Arriving) -> tuple[str, ...]:
+    """Say what makes one doubt that a file holds landmarks at all, as sentences.
+
+    Parameters
+    ----------
+    session
+        Its meshes tell how far off so many landmarks may be.
+    arriving
+        The file.
+
+    Examples
+    --------
+    >>> reading = LandmarkReading((Landmark("a", (1, 2, 3)),), False, (), doubts=("It is a log.",))
+    >>> doubts_of(Session(), Arriving(Path("a.csv"), reading, Side.SOURCE))
+    ('It is a log.',)
+    """
+    doubts = list(arriving.reading.doubts)
+    for side, fits in arriving.fits.items():
+        mesh = session.mesh(side)
+        if mesh is None or len(fits) != 1 or len(arriving.landmarks) < MANY:
+            continue
+        if fits[0].distance > mesh.diagonal:
+            doubts.append(
+                f"{len(arriving.landmarks):,} landmarks, and most of them lie farther from the "
+                f"{side.value} mesh than it is long."
+            )
+    return tuple(doubts)
+
+
 def is_plain(session: Session, arriving: Arriving) -> bool:
     """Whether an import leaves nothing to ask and nothing to tell before it is done.
 
@@ -262,6 +302,8 @@ def is_plain(session: Session, arriving: Arriving) -> bool:
     reading = arriving.reading
     # What becomes of curves is worth a look.
     if reading.skipped or reading.notes or reading.groups or arriving.doubtful:
+        return False
+    if doubts_of(session, arriving):
         return False
     if default_pairing(session, arriving) is not Pairing.BY_NAME:
         return False
