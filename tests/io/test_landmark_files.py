@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Role, Side, scaled
@@ -157,6 +157,7 @@ def expected_side(
     return marks
 
 
+@settings(max_examples=20)
 @given(landmarks=strategies.landmark_lists(strategies.trimmed_names))
 @pytest.mark.parametrize("side", list(Side))
 @pytest.mark.parametrize("known", FORMATS, ids=name_of)

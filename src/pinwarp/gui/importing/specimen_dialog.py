@@ -32,6 +32,7 @@ class SpecimenDialog(QDialog):
         self.specimens.setCurrentRow(arriving.reading.specimens.index(arriving.reading.specimen))
         self.specimens.setAlternatingRowColors(True)
         self.specimens.setUniformItemSizes(True)
+        self.specimens.item(0).setSizeHint(QSize(0, self.fontMetrics().height() + 7))
         self.specimens.setAccessibleName("Specimens of the file")
         kinds = QDialogButtonBox.StandardButton
         self.buttons = QDialogButtonBox(kinds.Ok | kinds.Cancel)

@@ -6,8 +6,7 @@ import re
 from pathlib import Path
 
 from pinwarp.core.landmarks import Side
-from pinwarp.io.csv_cells import formula_quoted
-from pinwarp.io.csv_text import plain_line
+from pinwarp.io.csv_text import csv_line
 from pinwarp.io.landmark_formats.lines import one_line
 from pinwarp.io.landmark_formats.reading import LandmarkReading
 from pinwarp.io.landmark_formats.table import BLANK, table_of
@@ -83,7 +82,5 @@ def text_of(outgoing: Outgoing) -> Written:
 
 
 def _quoted(name: str) -> str:
-    name = formula_quoted(" ".join(one_line(name).split()))
-    if _PLAIN.fullmatch(name):
-        return name
-    return plain_line([name], all_in_quotes=True).rstrip("\n")
+    name = " ".join(one_line(name).split())
+    return name if _PLAIN.fullmatch(name) else csv_line([name], all_in_quotes=True).rstrip("\n")
