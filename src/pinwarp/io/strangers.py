@@ -53,6 +53,11 @@ _KINDS = (
         b"Stratovan",
         (".ckpt",),
     ),
+    _Kind(
+        "a recording of markers over time (TRC)",
+        f"Take one moment of it. {_AS_TABLE}",
+        b"PathFileType",
+    ),
     _Kind("a scene of 3D Slicer", "Save the points on their own as .mrk.json.", b"<MRML"),
 )
 _OBJ_VERTEX = re.compile(rb"^v[ \t]+[-+.\d]", re.MULTILINE)

@@ -83,6 +83,8 @@ def test_a_row_without_a_name_never_takes_the_name_of_a_later_one() -> None:
         '"x","y","z"\n"a",1,2,3\n"b",4,5,6\n',
         '"","x","y","z"\n"a",1,2,3\n"b",4,5,6\n',
         "name,error,x,y,z\na,0.5,1,2,3\nb,0.25,4,5,6\n",
+        "#name,z,y,x\na,3,2,1\nb,6,5,4\n",
+        "Point ID,X Coord,Y Coord,Z Coord\na,1,2,3\nb,4,5,6\n",
         "1,2,3,a\n4,5,6,b\n",
     ],
 )
@@ -109,6 +111,11 @@ def test_the_header_may_say_the_unit() -> None:
     assert read("name,x (mm),y (mm),z (mm)\na,1,2,3\n").unit == "mm"
     assert read("name,x_m,y_m,z_m\na,1,2,3\n").unit == "m"
     assert read("name,x [mm],y [cm],z [mm]\na,1,2,3\n").unit == ""
+
+
+def test_further_columns_of_numbers_are_told() -> None:
+    (note,) = read("name,x,y,z,x.1,y.1,z.1\na,1,2,3,4,5,6\n", ".csv").notes
+    assert note == "3 further columns of numbers were passed over."
 
 
 def test_a_column_of_types_sets_the_role() -> None:
@@ -162,6 +169,8 @@ def test_what_may_be_no_landmarks_is_doubted(text: str, doubt: str) -> None:
         (b"# Blender\nv 1 2 3\nv 1 2 4\nv 1 3 3\nf 1 2 3\n", "a.txt", "a mesh .*obj.*Open it as"),
         (b"ply\nformat ascii 1.0\n", "a.txt", "a mesh .*ply"),
         (b'{"version": 1, "groups": []}', "a.json", "JSON, but.*CSV"),
+        (b"PathFileType\t4\t(X/Y/Z)\n", "a.trc", "markers over time"),
+        (b"name,status,pairs\na,done,16\n", "a.csv", "columns are not x, y and z"),
         (b"<!DOCTYPE html><html>404</html>", "a.csv", "a web page"),
     ],
 )
@@ -193,6 +202,8 @@ def test_a_volume_too_large_for_landmarks_is_named_all_the_same(tmp_path: Path) 
         "2\na 1 2 3\nb 4 5 6\n",
         "2\nmade by a program\na 1 2 3\nb 4 5 6\n",
         "# name x y z\na 1 2 3\nb 4 5 6\n",
+        "# name z y x\na 3 2 1\nb 6 5 4\n",
+        'Landmarks-1.0\n2\n"a"\n1 2 3 1 1\n"b"\n4 5 6 1 1\n',
         "name x y z\na 1 2 3\nb 4 5 6\n",
         "1 2 3 a\n4 5 6 b\n",
         '"x" "y" "z"\n"a" 1 2 3\n"b" 4 5 6\n',

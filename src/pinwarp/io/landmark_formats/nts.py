@@ -165,7 +165,9 @@ def _matrix(path: str | Path, text: str) -> _Matrix:
         # One specimen, a row for each of its landmarks.
         return _Matrix(1, rows, labels, [comment], numbers, code)
     axes, _ = axes_in(titles)
-    named = [one.of.strip() for one in axes] if 3 * len(axes) == columns else []
+    named = ["" if one.is_numbered else one.of.strip() for one in axes]
+    if 3 * len(named) != columns:
+        named = []
     return _Matrix(rows, columns // 3, named, labels or [comment] * (rows == 1), numbers, code)
 
 

@@ -274,8 +274,9 @@ class Gathering:
         skipped = tuple(sorted(self._skipped, key=lambda line: line.line))
         if not self._found:
             reason = f" (line {skipped[0].line}: {skipped[0].reason})" if skipped else ""
+            doubt = f" {doubts[0]}" if doubts else ""
             raise FileFormatError(
-                self._path, f"No landmark could be read{reason}. Expected are {expected}"
+                self._path, f"No landmark could be read{reason}.{doubt} Expected are {expected}"
             )
         names, repeated = self._names()
         landmarks = tuple(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -84,6 +85,8 @@ def read_table(
         for row in table.rows[: max(0, top - 1)]:
             gathering.skip(row.line, row.text, "it stands above the names of the columns")
     body = [row for row in table.rows[top:] if announced is None or row.cells != (announced[1],)]
+    if columns is None and table.separator == BLANK:
+        body = _below_title(table, body, announced is not None)
     plan = columns or _without_header(table, body)
     is_named = columns is not None
     if columns is None and _is_header(table, body):
@@ -109,10 +112,36 @@ def read_table(
     )
 
 
+def _below_title(table: Table, rows: Sequence[Row], is_counted: bool) -> list[Row]:
+    """Return rows without the remark below a count, and with names that stand a line above."""
+    rows = list(rows)
+    if is_counted and rows and not table.numbers_in(rows[0]):
+        rows = rows[1:]
+    above = [not table.numbers_in(row) and len(row.cells) == 1 for row in rows]
+    named = []
+    for number, row in enumerate(rows):
+        count = table.numbers_in(row)
+        if count >= len("xyz") and count == len(row.cells) and number and above[number - 1]:
+            named.append(replace(row, cells=(rows[number - 1].cells[0], *row.cells[:3])))
+        elif count >= len("xyz"):
+            # Elsewhere names stand in the line itself.
+            return rows
+    return named or rows
+
+
 def _notes(
     table: Table, rows: Sequence[Row], plan: Columns | None, announced: tuple[int, str] | None
 ) -> list[str]:
     notes = []
+    used = {n for place in plan.places for n in place} if plan is not None else set()
+    over = [
+        n
+        for row in rows[:1]
+        for n, cell in enumerate(row.cells)
+        if n not in used and plan is not None and n != plan.name and table.is_number(cell)
+    ]
+    if plan is not _NAMELESS and len(over) >= len("xyz"):
+        notes.append(f"{len(over)} further columns of numbers were passed over.")
     if plan is _NAMELESS and any(table.numbers_in(row) > len("xyz") for row in rows[:1]):
         notes.append("The numbers behind the third of each row were passed over.")
     if announced and announced[0] != len(rows):
@@ -132,7 +161,19 @@ def _header(table: Table) -> tuple[int, Columns | None]:
             table.is_number(row.cells[n]) for place in columns.places for n in place
         ):
             return number + 1, columns
-    return 0, None
+    return 0, _commented_header(table)
+
+
+def _commented_header(table: Table) -> Columns | None:
+    """Return what a comment above the first row says of its columns, if it names as many."""
+    if not table.rows:
+        return None
+    first, width = table.rows[0].line, len(_trimmed(table.rows[0].cells))
+    for row in reversed([row for row in table.comments if row.line < first]):
+        cells = [word for word in (row.cells[0].lstrip("# "), *row.cells[1:]) if word]
+        if len(cells) == width and (columns := columns_of(cells)):
+            return columns
+    return None
 
 
 def _announced(table: Table, top: int) -> tuple[int, str] | None:
