@@ -5,13 +5,18 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from pinwarp.core.landmarks import Landmark, Role, Side
+from pinwarp.core.mesh import Mesh
+from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.io.landmark_files import LandmarkReading, SkippedLine
-from pinwarp.session.importing.fit import Fit
+from pinwarp.io.meshes import MeshFile
+from pinwarp.session.importing.asking import doubts_of, is_plain
+from pinwarp.session.importing.fit import Fit, fits_of
 from pinwarp.session.importing.landmarks import (
     Arriving,
     Fate,
@@ -22,7 +27,6 @@ from pinwarp.session.importing.landmarks import (
     can_pair,
     default_pairing,
     imported,
-    is_plain,
     left_waiting,
 )
 from pinwarp.session.naming import free_names
@@ -261,3 +265,30 @@ def test_a_name_that_only_looks_like_one_of_the_session_is_told_and_asked_about(
     assert words(session, arriving, Pairing.BY_NAME) == ["new, though it looks like fovea"]
     assert not is_plain(session, arriving)
     assert is_plain(session, file([Landmark("head", None, (7, 8, 9))]))
+
+
+def test_what_a_file_says_of_a_landmark_comes_in_with_a_new_one_only():
+    here = Landmark("a", (1, 2, 3), note="mine")
+    bare = Landmark("b", (4, 5, 6))
+    said = {"note": "worn", "locked": True, "enabled": False, "role": Role.PASSENGER}
+    arriving = file([Landmark(name, (7, 8, 9), **said) for name in "abc"], SOURCE)
+    after = imported(Session(landmarks=(here, bare)), arriving, ImportChoice(BY_NAME))
+    assert after.landmarks == (
+        Landmark("a", (7, 8, 9), note="mine"),
+        Landmark("b", (7, 8, 9), note="worn"),
+        Landmark("c", (7, 8, 9), **said),
+    )
+
+
+def test_many_landmarks_of_which_few_lie_near_the_mesh_are_doubted():
+    places = np.random.default_rng(1).uniform(500, 900, (120, 3))
+    marks = [Landmark(f"p{n}", tuple(place)) for n, place in enumerate(places)]
+    mesh = Mesh([[0, 0, 0], [10, 0, 0], [0, 10, 0], [0, 0, 10]], [[0, 1, 2], [0, 1, 3]])
+    session = Session(source=MeshFile(Path("a.ply"), mesh, "ab", ()))
+    fits = {SOURCE: fits_of(marks, SOURCE, SurfaceIndex(mesh))}
+    arriving = Arriving(Path("a.csv"), LandmarkReading(tuple(marks), False, ()), SOURCE, fits)
+    (doubt,) = doubts_of(session, arriving)
+    assert "120 landmarks, and most of them lie farther from the source mesh" in doubt
+    assert not is_plain(session, arriving)
+    few = replace(arriving, reading=LandmarkReading(tuple(marks[:9]), False, ()))
+    assert doubts_of(session, few) == ()

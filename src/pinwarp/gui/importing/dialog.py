@@ -28,6 +28,7 @@ from pinwarp.gui.importing.arrival_model import ArrivalModel
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.lengths import distance_from_mesh, format_length
 from pinwarp.io.landmark_files import LandmarkReading
+from pinwarp.session.importing.asking import doubts_of
 from pinwarp.session.importing.fit import Fit
 from pinwarp.session.importing.landmarks import (
     Arriving,
@@ -37,7 +38,6 @@ from pinwarp.session.importing.landmarks import (
     awaiting,
     can_pair,
     default_pairing,
-    doubts_of,
     group_words,
     left_waiting,
     summary,

@@ -17,6 +17,7 @@ from pinwarp.gui.style.lengths import distance_from_mesh
 from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, FileTasks, Progress
 from pinwarp.io.landmark_files import LandmarkReading, read_landmarks
 from pinwarp.session.editor import Editor
+from pinwarp.session.importing.asking import is_plain
 from pinwarp.session.importing.fit import Fit, fits_of, fitted
 from pinwarp.session.importing.landmarks import (
     Arriving,
@@ -25,7 +26,6 @@ from pinwarp.session.importing.landmarks import (
     default_pairing,
     group_words,
     imported,
-    is_plain,
 )
 from pinwarp.session.mesh_units import unit_on
 
