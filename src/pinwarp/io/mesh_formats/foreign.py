@@ -222,7 +222,7 @@ def volume_in(data: bytes, name: str) -> str | None:
     """
     small = name.lower()
     for known in _FOREIGN:
-        signed = known.signature is not None and known.signature.match(data)
+        signed = known.signature and re.match(known.signature, data, re.I | re.S)
         named = bool(known.suffixes) and small.endswith(known.suffixes) and b"\0" in data
         if known.way == _SEGMENT and (signed or named):
             return _words(known)
