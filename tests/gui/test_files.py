@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import warnings
 
 import numpy as np
@@ -11,6 +12,7 @@ from qtpy.QtGui import QDragEnterEvent, QDropEvent
 from qtpy.QtWidgets import QApplication
 
 from pinwarp.core.landmarks import Side
+from pinwarp.gui.files import session_meshes
 from pinwarp.gui.files.documents import Opening
 from pinwarp.gui.files.file_dialogs import Answer
 from pinwarp.gui.scene.drawables import Hint
@@ -249,7 +251,23 @@ def test_a_side_file_is_not_taken_for_pairs(user, tmp_path):
     assert user.session.landmarks == ()
 
 
-def test_opening_a_large_mesh_shows_progress_and_leaves_the_window_alive(user, tmp_path):
+@pytest.fixture
+def held_reading(monkeypatch):
+    """Meshes are read once this is set."""
+    go = threading.Event()
+
+    def read_later(path, progress):
+        go.wait(30)
+        return read_mesh(path, progress=progress)
+
+    monkeypatch.setattr(session_meshes, "read_mesh", read_later)
+    yield go
+    go.set()
+
+
+def test_opening_a_large_mesh_shows_progress_and_leaves_the_window_alive(
+    user, tmp_path, held_reading
+):
     import pyvista as pv
 
     path = tmp_path / "large.ply"
@@ -266,8 +284,10 @@ def test_opening_a_large_mesh_shows_progress_and_leaves_the_window_alive(user, t
     timer.timeout.connect(count)
     timer.start(5)
     user.window.parts.documents.open_mesh(SOURCE, path)
-    assert user.window.progress.isVisible()
+    user.qtbot.waitUntil(user.window.progress.isVisible)
     assert user.window.cancel.isVisible()
+    turns = 0
+    held_reading.set()
     user.settle()
     timer.stop()
     assert turns > 3
@@ -275,13 +295,11 @@ def test_opening_a_large_mesh_shows_progress_and_leaves_the_window_alive(user, t
     assert len(user.session.source.mesh.faces) == 500_000
 
 
-def test_cancelling_a_long_read_changes_nothing(user, tmp_path):
-    import pyvista as pv
-
-    path = tmp_path / "large.ply"
-    pv.Plane(i_resolution=500, j_resolution=500).triangulate().save(path)
-    user.window.parts.documents.open_mesh(SOURCE, path)
+def test_cancelling_a_long_read_changes_nothing(user, held_reading):
+    user.window.parts.documents.open_mesh(SOURCE, assets_folder() / "femur_generic.ply")
+    user.qtbot.waitUntil(user.window.cancel.isVisible)
     user.qtbot.mouseClick(user.window.cancel, Qt.MouseButton.LeftButton)
+    held_reading.set()
     user.settle()
     assert user.session.source is None
     assert user.dialogs.errors == []

@@ -7,8 +7,11 @@ import threading
 import time
 
 import pytest
+from qtpy.QtCore import QTimer
+from qtpy.QtWidgets import QStatusBar
 
 from pinwarp.gui.tasks.jobs import Cancelled, LatestWins, SlowJob
+from pinwarp.gui.tasks.progress import JobProgress
 
 
 @pytest.fixture
@@ -116,6 +119,27 @@ def test_slow_jobs_run_in_order_with_progress_and_can_be_cancelled(qapp, qtbot, 
     assert log == ["begun", Cancelled]
     jobs.run("Short", lambda _progress: "done", log.append, log.append)
     qtbot.waitUntil(lambda: log[-1] == "done")
+    jobs.shut_down()
+
+
+def test_a_job_that_ends_before_its_bar_is_due_shows_none(qapp, qtbot, gate):
+    place, jobs = QStatusBar(), SlowJob()
+    qtbot.addWidget(place)
+    progress = JobProgress(place, [jobs])
+    due = progress.findChild(QTimer)
+    due.setInterval(60_000)
+    jobs.run("Short", lambda _progress: None, lambda _done: None, lambda _error: None)
+    assert due.isActive()
+    qtbot.waitUntil(lambda: jobs.is_idle)
+    assert not due.isActive()
+    assert progress.bar.isHidden()
+    due.setInterval(1)
+    jobs.run("Long", lambda _progress: gate.wait(30), lambda _done: None, lambda _error: None)
+    qtbot.waitUntil(lambda: not progress.bar.isHidden())
+    assert not progress.cancel.isHidden()
+    gate.set()
+    qtbot.waitUntil(lambda: jobs.is_idle)
+    assert progress.bar.isHidden()
     jobs.shut_down()
 
 

@@ -338,8 +338,8 @@ def test_an_animation_can_be_cancelled_while_the_window_lives(sample, tmp_path):
     dialog = dialog_of(sample, "export_animation", AnimationDialog)
     sample.dialogs.saves = [tmp_path / "a.gif"]
     press(sample, dialog, settle=False)
+    sample.qtbot.waitUntil(window.cancel.isVisible, timeout=30_000)
     sample.qtbot.waitUntil(lambda: window.progress.value() >= 2, timeout=30_000)
-    assert window.cancel.isVisible()
     QTest.mouseClick(window.cancel, Qt.MouseButton.LeftButton)
     sample.settle()
     assert "Cancelled" in window.statusBar().currentMessage()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
-from qtpy.QtCore import QObject
+from qtpy.QtCore import QObject, QTimer
 from qtpy.QtWidgets import QProgressBar, QPushButton, QStatusBar
 
 from pinwarp.gui.tasks.jobs import SlowJob
@@ -13,6 +13,9 @@ from pinwarp.gui.tasks.stepped_job import SteppedJob
 
 # Seconds between two steps of the bar.
 PAUSE = 0.1
+# What is done sooner shows no bar: it would only flash, and each of its steps draws the whole
+# window anew where there is no graphics card.
+SHOWN_AFTER_MS = 200
 
 
 class JobProgress(QObject):
@@ -37,6 +40,10 @@ class JobProgress(QObject):
         self.cancel = QPushButton("Cancel")
         self.cancel.setFlat(True)
         self.cancel.hide()
+        self._delay = QTimer(self)
+        self._delay.setSingleShot(True)
+        self._delay.setInterval(SHOWN_AFTER_MS)
+        self._delay.timeout.connect(self._show)
         place.addPermanentWidget(self.bar)
         place.addPermanentWidget(self.cancel)
         for job in jobs:
@@ -53,6 +60,10 @@ class JobProgress(QObject):
     def _on_started(self, title: str) -> None:
         self.bar.setFormat(title)
         self.bar.setValue(0)
+        if not self.bar.isVisible() and not self._delay.isActive():
+            self._delay.start()
+
+    def _show(self) -> None:
         self.bar.show()
         self.cancel.show()
 
@@ -65,5 +76,6 @@ class JobProgress(QObject):
 
     def _on_ended(self) -> None:
         if self.is_idle:
+            self._delay.stop()
             self.bar.hide()
             self.cancel.hide()

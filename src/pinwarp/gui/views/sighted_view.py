@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
+
 import numpy as np
 from numpy.typing import NDArray
 from qtpy.QtCore import QPointF
@@ -27,6 +29,7 @@ class SightedView(FastView):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.is_placing_camera = False
+        self._seen: tuple[Hashable, Sight | None] = (None, None)
         mend = self.renderer.AddObserver("ResetCameraClippingRangeEvent", self._mend_depth)
         self._vtk_observers.append((self.renderer, mend))
 
@@ -56,7 +59,12 @@ class SightedView(FastView):
     @property
     def sight(self) -> Sight | None:
         """What the camera sees; None for one that looks nowhere."""
-        return Sight.of(self.camera, max(1, self.width()) / max(1, self.height()))
+        # Asked many times between two moves of the camera. Time stamps are no other camera's.
+        key = (self.camera.GetMTime(), self.width(), self.height())
+        if key != self._seen[0]:
+            aspect = max(1, self.width()) / max(1, self.height())
+            self._seen = (key, Sight.of(self.camera, aspect))
+        return self._seen[1]
 
     @property
     def unit_per_pixel(self) -> float:
