@@ -81,10 +81,16 @@ def test_a_mesh_that_is_kept_of_every_session_is_told_by_the_monkey(monkey):
 
 def test_memory_that_grows_by_a_tenth_after_the_first_thousand_events_is_told():
     held = [
-        Held(events, megabytes, meshes=4, surfaces=2, finders=0)
+        Held(events, 0, megabytes, meshes=4, surfaces=2, finders=0)
         for events, megabytes in ((0, 500), (1100, 800), (2150, 870), (3200, 879))
     ]
     assert grown(held) == ""
     assert grown([*held, replace(held[0], events=4000, megabytes=881)]) == (
         "memory from 800 to 881 MB"
+    )
+    # Another window is compared with itself, and with all others in what it holds.
+    anew = replace(held[0], events=4000, opened_at=2500, megabytes=950)
+    assert grown([*held, anew]) == ""
+    assert grown([*held, anew, replace(anew, events=5000, megabytes=1050, meshes=5)]) == (
+        "meshes from 4 to 5, memory from 950 to 1050 MB"
     )

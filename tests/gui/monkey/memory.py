@@ -91,9 +91,22 @@ def warm_up(window: MainWindow, settle: Callable[[], None]) -> None:
 
 @dataclass(frozen=True)
 class Held:
-    """What the program holds while what it began with is open."""
+    """What the program holds while what it began with is open.
+
+    Attributes
+    ----------
+    events
+        So far.
+    opened_at
+        How many there were when this window was opened.
+    megabytes
+        Of memory.
+    meshes, surfaces, finders
+        How many are alive.
+    """
 
     events: int
+    opened_at: int
     megabytes: float
     meshes: int
     surfaces: int
@@ -115,15 +128,17 @@ def leave_everything(window: MainWindow) -> None:
     editor.replace_all(Session(), None)
 
 
-def held(window: MainWindow, events: int, size: QSize, settle: Callable[[], None]) -> Held:
+def held(
+    window: MainWindow, events: int, opened_at: int, size: QSize, settle: Callable[[], None]
+) -> Held:
     """Return what the program holds, with its window at a size.
 
     Parameters
     ----------
     window
         Has its own size again afterwards.
-    events
-        How many there were so far.
+    events, opened_at
+        How many there were so far, and when the window was opened.
     size
         The same each time that is compared.
     settle
@@ -137,7 +152,8 @@ def held(window: MainWindow, events: int, size: QSize, settle: Callable[[], None
     resident = psutil.Process().memory_info().rss / 2**20
     window.resize(own)
     settle()
-    return Held(events, resident, *(counts[kind] for kind in ("Mesh", "Surface", "PathFinder")))
+    numbers = (counts[kind] for kind in ("Mesh", "Surface", "PathFinder"))
+    return Held(events, opened_at, resident, *numbers)
 
 
 def grown(series: Sequence[Held]) -> str:
@@ -148,8 +164,11 @@ def grown(series: Sequence[Held]) -> str:
         for what in ("meshes", "surfaces", "finders")
         if (now := getattr(last, what)) > (before := getattr(first, what))
     ]
-    # Some hundred events in, everything that is used at all has been used.
-    settled = next((look for look in series if look.events >= WARM_AFTER), last)
+    # The program has one window in its life; the graphics of the next are others. A thousand events
+    # in, everything that is used at all has been used.
+    of_window = [look for look in series if look.opened_at == last.opened_at]
+    warm = (look for look in of_window if look.events >= last.opened_at + WARM_AFTER)
+    settled = next(warm, last)
     if last.megabytes > MOST_GROWTH * settled.megabytes:
         more.append(f"memory from {settled.megabytes:.0f} to {last.megabytes:.0f} MB")
     return ", ".join(more)

@@ -155,6 +155,7 @@ class Monkey:
             self._steps.append("   opened anew")
 
     def _open_anew(self) -> None:
+        self._opened_at = self._events.count
         self.window = self._open_window()
         self.window.editor.saved.connect(self._on_saved)
         self._open_bones()
@@ -232,7 +233,9 @@ class Monkey:
         self._settle()
         self._open_bones()
         self._delete_deferred()
-        self.held.append(held(self.window, self._events.count, self._size, self._settle))
+        self.held.append(
+            held(self.window, self._events.count, self._opened_at, self._size, self._settle)
+        )
         print(self.held[-1], flush=True)
         words = grown(self.held)
         self._require(not words, f"with the same open as in the beginning grew: {words}")
