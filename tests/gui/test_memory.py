@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import weakref
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +18,7 @@ from pinwarp.core.landmarks import Side
 from pinwarp.core.maps import MapKind
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui.drawn.surface import Surface
-from pinwarp.gui.scene.drawables import Paths
+from pinwarp.gui.scene.drawables import Overlay, Paths
 from pinwarp.io.samples import sample_session
 from pinwarp.session import edits
 from pinwarp.session.judging.quality import Quality
@@ -101,6 +102,23 @@ def test_meshes_that_take_one_another_s_place_stay_only_while_they_can_be_undone
     assert alive(KINDS)["Surface"] == before + 3, "undo brings each back at once"
     reopen(user)
     assert alive(KINDS)["Surface"] == before
+
+
+def test_the_stand_in_of_a_large_mesh_goes_with_its_session(user, monkeypatch):
+    user.open_sample()
+    mesh = user.session.mesh(SOURCE)
+    stand_in = mesh.with_vertices(mesh.vertices + 0.1)
+    user.window.surfaces.of(mesh).stand_in = stand_in
+    monkeypatch.setattr(user.window.parts.warps, "_is_slow", lambda: True)
+    editor = user.editor
+    editor.commit(edits.set_penalty(editor.committed, 3.0), "Change penalty")
+    user.settle()
+    assert user.window.viewports[Side.DESTINATION].drawn(Overlay).stand_in.mesh is stand_in
+    gone = weakref.ref(stand_in)
+    del mesh, stand_in
+    reopen(user)
+    gc.collect()
+    assert gone() is None
 
 
 def test_a_sweep_is_not_taken_for_that_of_a_mesh_gone_by():

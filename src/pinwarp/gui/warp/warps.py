@@ -197,7 +197,10 @@ class Warps(Capability):
             self._shade(result, inputs.stand_in, result.stand_in, before_coarse),
         )
         # The mesh in full is as it was while only its stand-in moves.
-        self._shaded = (warps[0] or before, warps[1] or before_coarse)
+        self._shaded = (
+            warps[0] or _if_of(before, inputs.mesh),
+            warps[1] or _if_of(before_coarse, inputs.stand_in),
+        )
         return _Shaded(result, request.kind, warps, self._judge(result, request.kind))
 
     def _judge(self, result: WarpResult, kind: _Kind) -> Quality | None:
@@ -258,6 +261,11 @@ class Warps(Capability):
             kind = _Kind.PREVIEW if previewing else _Kind.REST
             self._on_warp(_Shaded(WarpResult(inputs, problem=_FAILED), kind))
         raise error
+
+
+def _if_of(warp: OverlayWarp | None, mesh: Mesh | None) -> OverlayWarp | None:
+    """Return a warp of a mesh; nothing of a mesh gone by."""
+    return warp if warp is not None and warp.mesh is mesh else None
 
 
 def _over(warps: _Warps, before: _Warps) -> _Warps:
