@@ -78,7 +78,7 @@ def main() -> None:
         "--only",
         nargs="*",
         help="solve, point, evaluate, live, quality, slide, refine, refined, guess, half, "
-        "memory, frames, refresh",
+        "cohort, memory, frames, refresh",
     )
     options = parser.parse_args()
     from tests.benchmarks import core, frames, guessing, peers, quality, refinement
@@ -94,6 +94,7 @@ def main() -> None:
         "refined": ("What came of it (mm)", refinement.refined),
         "guess": ("The first guess, RMS in % of the bone's size", guessing.guessing),
         "half": ("The first guess on half a bone", guessing.halves),
+        "cohort": ("A cohort's first pass, errors in mm", guessing.cohort),
         "memory": ("Peak memory beyond the meshes (MB)", core.remembering),
         "frames": ("In the window", frames.framing),
         "refresh": ("Figures after a drag, 200 pairs", frames.refreshing),

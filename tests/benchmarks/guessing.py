@@ -6,6 +6,7 @@ Landmark RMS are shares of the destination's size, in percent, unless a unit is 
 from __future__ import annotations
 
 import functools
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyvista as pv
 from assets import make_bones
 from scipy.spatial.transform import Rotation
 
@@ -20,13 +22,20 @@ from pinwarp.core.alignment import fit_similarity
 from pinwarp.core.factor import factorise
 from pinwarp.core.first_guess import FirstGuess, Verdict, first_guess
 from pinwarp.core.guessed import guessed
+from pinwarp.core.landmarks import Landmark, Side, as_position, positions
 from pinwarp.core.lengths import rms
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.plain_surface import PlainSurface
 from pinwarp.core.pose import Mirror, PoseSettings
 from pinwarp.core.quality import leave_one_out
 from pinwarp.core.sampling import spread_places
-from pinwarp.io.meshes import read_mesh
+from pinwarp.io.manifest import read_manifest
+from pinwarp.io.meshes import read_mesh, write_mesh
+from pinwarp.io.summary_file import read_summary
+from pinwarp.session.keeping.files import read_session
+from pinwarp.session.session import Session
+from pinwarp.session.study import batch
+from pinwarp.session.study.workers import cores, on_this_machine
 from tests.core import bones
 from tests.core.femur import femur_landmarks, femur_meshes
 from tests.core.pelvis import pelvis_meshes
@@ -232,15 +241,18 @@ def halves() -> Iterator[Row]:
 
 
 def _half(given: Bones, end: int, capped: bool) -> tuple[Bones, np.ndarray]:
-    import pyvista as pv
-
     about = given.destination.vertices - given.destination.vertices.mean(axis=0)
     along = np.linalg.svd(about, full_matrices=False)[2][0] * end
     faces = np.hstack([np.full((len(given.destination.faces), 1), 3), given.destination.faces])
     surface = pv.PolyData(given.destination.vertices, faces.ravel()).clean()
     origin = given.destination.vertices.mean(axis=0)
     cut = surface.clip_closed_surface if capped else functools.partial(surface.clip, invert=False)
-    part = cut(normal=along, origin=origin).extract_surface().triangulate().clean()
+    part = (
+        cut(normal=along, origin=origin)
+        .extract_surface(algorithm="dataset_surface")
+        .triangulate()
+        .clean()
+    )
     mesh = Mesh(part.points, part.regular_faces)
     there = (given.v - origin) @ along > 0
     return Bones(given.name, given.source, mesh, given.u, given.v), there
@@ -270,3 +282,56 @@ def _of_half(half: Bones, there: np.ndarray, end: int, *, capped: bool, partial:
             "disc (mm)": places.radii[0],
         }
     return row
+
+
+def cohort(subjects: int = 20) -> Iterator[Row]:
+    """A batch's first pass over made femurs: one is half a bone, one is a ball, a quarter mirrored.
+
+    Errors are in millimetres.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        begin = time.perf_counter()
+        rows, true = _first_pass(Path(folder), subjects)
+        seconds = time.perf_counter() - begin
+        errors = []
+        for name, row in rows.items():
+            if row["status"] == "done":
+                session = read_session(Path(folder, "out", f"{name}.pinwarp.csv"))
+                places = positions(session.landmarks, Side.DESTINATION)
+                errors.append(rms(np.linalg.norm(places - true[name], axis=1)))
+    verdicts = [row["verdict"] for row in rows.values()]
+    yield {
+        "what": f"{subjects} subjects",
+        "sure/ask/none": "/".join(str(verdicts.count(verdict.value)) for verdict in Verdict),
+        "first rows": ", ".join(list(rows)[:3]),
+        "median RMS": float(np.median(errors)),
+        "largest RMS": max(errors),
+        "seconds": seconds,
+    }
+
+
+def _first_pass(folder: Path, subjects: int) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    source, u = made_femur(None)
+    write_mesh(folder / "source.ply", source)
+    marks = [Landmark(f"p{k}", as_position(place)) for k, place in enumerate(u)]
+    lines, true = ["name,destination_mesh"], {}
+    for seed in range(subjects):
+        given, _, _ = posed(made(seed), 6 * seed + 3 * (seed % 4 == 3))
+        if seed == 7:
+            given, _ = _half(given, 1, capped=False)
+        if seed == 13:
+            ball = pv.Icosphere(radius=50.0, nsub=4)
+            given = Bones("ball", source, Mesh(ball.points, ball.regular_faces), u, given.v)
+        name = {7: "half", 13: "ball"}.get(seed, f"s{seed}")
+        write_mesh(folder / f"{name}.ply", given.destination)
+        lines.append(f"{name},{name}.ply")
+        true[name] = given.v
+    (folder / "study.csv").write_text("\n".join(lines))
+    tasks = batch.plan(
+        read_manifest(folder / "study.csv", suggested=True),
+        Session(read_mesh(folder / "source.ply"), landmarks=tuple(marks)),
+        folder / "out",
+        suggestion=PoseSettings(),
+    )
+    tally = batch.run(tasks, folder / "out", functools.partial(on_this_machine, jobs=cores()))
+    return read_summary(tally.summary), true

@@ -233,8 +233,9 @@ class _Sides:
         missed = rms(np.linalg.norm(spline.evaluate(u) - v, axis=1)) if len(u) else 0.0
         vertices = spline.evaluate(self.source.mesh.vertices)
         apart = self._apart(self.source.mesh.with_vertices(vertices))
-        size = self.destination.size
-        fit = float(np.hypot(apart, missed)) / size
+        fit = float(np.hypot(apart, missed)) / self.destination.size
+        # Of a part the whole says how large the bone is.
+        size = pose.scale * self.source.size if self.partial else self.destination.size
         return Reading(pose, spline, self.surface, size, fit, size * doubt_of(fit), met=self.pairs)
 
     def refined(self, reading: Reading, progress: Progress) -> Reading:

@@ -64,9 +64,10 @@ class Reading:
     surface : Surface
         The destination's.
     size : float
-        The destination's RMS radius, in its unit.
+        The bone's RMS radius in the destination's unit, also where only a part of it is there.
     fit : float
-        How far the surfaces lie apart after a coarse warp, as a mean both ways, over the size.
+        How far the surfaces lie apart after a coarse warp, as a mean both ways, over the
+        destination's RMS radius.
     radius : float
         The doubt of a place before any more is accepted, in the destination's unit.
     margin : float
