@@ -61,6 +61,9 @@ ENOUGH = 3
 SMALLEST_FIT = 0.002
 
 NOTHING_FITS = "The source could not be laid on the destination."
+PAIRS_IN_DOUBT = (
+    "Look at the pairs that are there, which the warp had to meet, or place three more."
+)
 WAY_OUT = "Place three pairs by hand, or check that the meshes are the same bone."
 
 
@@ -240,13 +243,17 @@ class _Sides:
 
     def refined(self, reading: Reading, progress: Progress) -> Reading:
         """Return a reading warped finely; its fit stays that by which it was judged."""
-        spline = self._warped(reading.pose, self.pairs, FINE, progress)
+        spline = self._warped(
+            reading.pose, self.pairs, FINE, lambda share, words: progress(0.9 * share, words)
+        )
         found = reading if spline is None else replace(reading, spline=spline)
         if not len(self.pairs[0]):
             return found
         # How far the given pairs lie from where the shape alone would have put them.
         none = np.zeros((0, 3)), np.zeros((0, 3))
-        blind = self._warped(reading.pose, none, COARSE, progress)
+        blind = self._warped(
+            reading.pose, none, COARSE, lambda share, words: progress(0.9 + 0.1 * share, words)
+        )
         if blind is None:
             return found
         radius = guessed(replace(reading, spline=blind, met=none), self.pairs[0], *self.pairs).radii
@@ -286,7 +293,9 @@ class _Sides:
         """Return what may be done with readings."""
         different = self._different(sorted(readings, key=lambda reading: reading.fit))
         if not different:
-            return FirstGuess((), Verdict.NONE, f"{NOTHING_FITS} {WAY_OUT}", np.inf, np.inf, np.inf)
+            return FirstGuess(
+                (), Verdict.NONE, f"{NOTHING_FITS} {self._way_out}", np.inf, np.inf, np.inf
+            )
         best, *others = different
         least = max(best.fit, SMALLEST_FIT)
         others = [replace(x, margin=max(x.fit, SMALLEST_FIT) / least) for x in others]
@@ -316,6 +325,10 @@ class _Sides:
                 chosen.append(reading)
         return chosen
 
+    @property
+    def _way_out(self) -> str:
+        return PAIRS_IN_DOUBT if len(self.pairs[0]) else WAY_OUT
+
     def _verdict(
         self, best: Reading, near: Sequence[Reading], hand: float, pose: float
     ) -> tuple[Verdict, str]:
@@ -323,17 +336,17 @@ class _Sides:
         if is_cut:
             return Verdict.NONE, (
                 "The destination ends at a rim where the source goes on: say so if only a part of "
-                f"the bone is there. {WAY_OUT}"
+                f"the bone is there. {self._way_out}"
             )
         if best.fit > LARGEST_FIT:
             return Verdict.NONE, (
                 f"{NOTHING_FITS} At best they lie {best.fit:.1%} of the bone's size apart, where "
-                f"no more than {LARGEST_FIT:.0%} can be trusted. {WAY_OUT}"
+                f"no more than {LARGEST_FIT:.0%} can be trusted. {self._way_out}"
             )
         if 1 + len(near) > MOST_SHOWN:
             return Verdict.NONE, (
                 f"The source fits in {len(near) + 1} ways about as well, as something round does: "
-                f"no pose can be told. {WAY_OUT}"
+                f"no pose can be told. {self._way_out}"
             )
         words = []
         if hand < OTHER_HAND:
