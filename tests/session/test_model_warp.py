@@ -181,6 +181,14 @@ def test_a_session_on_a_bone_is_saved_and_opened_with_the_models_mesh(leg):
     assert "has changed" in read_session(path).source.notes[0]
 
 
+def test_landmarks_that_nobody_has_looked_at_are_told(leg):
+    session = session_on(leg, "thigh")
+    first, *rest = session.landmarks
+    session = replace(session, landmarks=(first.suggested(first.destination), *rest))
+    (note,) = body_warp(session, bone_in(leg)).notes
+    assert note == "thigh: 1 landmark was only suggested: nobody has looked there yet."
+
+
 def test_a_warp_that_folds_is_told(leg):
     session = session_on(leg, "thigh")
     first, second, *rest = session.landmarks

@@ -107,6 +107,7 @@ def body_warp(session: Session, bone: Bone) -> BodyWarp:
     notes = (
         *notes,
         *about_refinement,
+        *_about_suggested(session),
         *not_sliding_note(solution.result),
         *((few,) if len(source) < FEW else ()),
         *_about_folds(spline, bone, view),
@@ -134,6 +135,12 @@ def _prediction(solution: SolvedWarp) -> Prediction | None:
     if not settings.is_regular or result.is_fitted:
         return None
     return prediction_of(solution.factor, solution.destination, settings.penalty)
+
+
+def _about_suggested(session: Session) -> tuple[str, ...]:
+    count = sum(pair.is_suggested for pair in session.pairs)
+    are = counted(count, "landmark was", "landmarks were")
+    return (f"{are} only suggested: nobody has looked there yet.",) if count else ()
 
 
 def _about_folds(spline: Spline, bone: Bone, view: BodyView) -> tuple[str, ...]:
