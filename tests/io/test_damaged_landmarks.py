@@ -36,7 +36,7 @@ LANDMARKS = (
 # What has no line to name: there is nothing in the file, or all of it is wrong.
 WITHOUT_LINE = re.compile(
     "is empty|not a text file|too large|lines, and a landmark file|This is a session"
-    "|could be read\.|not a pinwarp session|table of landmarks is missing|newer pinwarp"
+    r"|could be read\.|not a pinwarp session|table of landmarks is missing|newer pinwarp"
 )
 
 
