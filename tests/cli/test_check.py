@@ -32,6 +32,7 @@ KEYS = {
     "folded_vertices": int,
     "distance": dict,
     "fitted": (int, type(None)),
+    "suggested": int,
     "findings": list,
     "notes": list,
     "groups": list,
