@@ -275,14 +275,14 @@ class MarkerLayer(QWidget):
         painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, words)
 
     def _paint_ghost(self, painter: QPainter, ghost: Ghost) -> None:
-        """Paint the next ghost, with its name; what lies behind the bone is faint."""
+        """Paint the next ghost, faintly behind the bone, and its name, which is always read."""
         ((x, y),), (hidden,) = self._project([ghost.position]), self._are_hidden([ghost.position])
         at = QPointF(x, y)
         painter.setOpacity(0.5 if hidden else 1.0)
         self._paint_doubt(painter, ghost, at, 0.22)
         draw_ghost(painter, at, GHOST_RADIUS)
-        draw_label(painter, f"{ghost.name}?", at, self.room_at(at))
         painter.setOpacity(1.0)
+        draw_label(painter, f"{ghost.name}?", at, self.room_at(at))
 
     def _paint_other_ghosts(self, painter: QPainter, others: OtherGhosts) -> None:
         """Paint smaller rings without names, in discs that leave the bone to be seen."""
@@ -317,8 +317,8 @@ class MarkerLayer(QWidget):
         at, radius = QPointF(x, y), self._signs.radius + HALO
         painter.setOpacity(0.5 if hidden else 1.0)
         draw_ghost(painter, at, radius)
-        draw_label(painter, counterpart.name, at, self.room_at(at), radius)
         painter.setOpacity(1.0)
+        draw_label(painter, counterpart.name, at, self.room_at(at), radius)
 
     def _paint_star(self, painter: QPainter, star: Star) -> None:
         """Paint a star in a dotted ring where the next landmark helps most."""
