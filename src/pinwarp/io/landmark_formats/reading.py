@@ -274,7 +274,7 @@ class Gathering:
         skipped = tuple(sorted(self._skipped, key=lambda line: line.line))
         if not self._found:
             reason = f" (line {skipped[0].line}: {skipped[0].reason})" if skipped else ""
-            doubt = f" {doubts[0]}" if doubts else ""
+            doubt = f" {doubts[0]}" if doubts and skipped else ""
             raise FileFormatError(
                 self._path, f"No landmark could be read{reason}.{doubt} Expected are {expected}"
             )
