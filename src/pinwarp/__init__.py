@@ -16,7 +16,8 @@ Models of OpenSim
     :class:`WarpedModel`, :class:`ElementRow`
 The spline
     :func:`solve_coefficients`, :class:`TPSCoefficients3D`, :class:`PenaltyConvention`,
-    :class:`Components`, :func:`factorise`, :func:`leave_one_out`, :func:`penalty_curve`
+    :class:`Components`, :func:`factorise`, :func:`leave_one_out`, :func:`suspects`,
+    :func:`penalty_curve`
 What can go wrong
     :class:`PinwarpError`, :class:`PinwarpWarning`
 
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from pinwarp.core.quality import leave_one_out, penalty_curve
     from pinwarp.core.settings import WarpSettings
     from pinwarp.core.surface_distance import compare_surfaces
+    from pinwarp.core.suspects import suspects
     from pinwarp.io.landmark_files import read_landmarks, write_landmarks
     from pinwarp.io.meshes import MeshFile, read_mesh, write_mesh
     from pinwarp.io.osim.model import OsimModel
@@ -89,6 +91,7 @@ __all__ = [
     "read_session",
     "refined_session",
     "solve_coefficients",
+    "suspects",
     "warp_model",
     "warped_mesh",
     "warped_passengers",
@@ -108,6 +111,7 @@ _HOMES = {
     "core.quality": ("leave_one_out", "penalty_curve"),
     "core.settings": ("WarpSettings",),
     "core.surface_distance": ("compare_surfaces",),
+    "core.suspects": ("suspects",),
     "io.landmark_files": ("read_landmarks", "write_landmarks"),
     "io.meshes": ("MeshFile", "read_mesh", "write_mesh"),
     "io.osim.model": ("OsimModel",),

@@ -77,11 +77,11 @@ def main() -> None:
     parser.add_argument(
         "--only",
         nargs="*",
-        help="solve, point, evaluate, live, quality, slide, refine, refined, guess, half, "
-        "cohort, memory, frames, refresh",
+        help="solve, point, evaluate, live, quality, suspects, slide, refine, refined, guess, "
+        "half, cohort, memory, frames, refresh",
     )
     options = parser.parse_args()
-    from tests.benchmarks import core, frames, guessing, peers, quality, refinement
+    from tests.benchmarks import core, frames, guessing, peers, quality, refinement, suspects
 
     parts = {
         "solve": ("One solve", core.solving),
@@ -89,6 +89,7 @@ def main() -> None:
         "evaluate": ("Evaluation at all vertices", core.evaluating),
         "live": ("What the hand feels, against the fastest peer's solve + evaluate", core.living),
         "quality": ("Is this warp right?", quality.judging),
+        "suspects": ("Which pair is wrong: per cent of made-up sets", suspects.rates),
         "slide": ("Semilandmarks, on one thread", refinement.sliding),
         "refine": ("Refining to the whole surface", refinement.refining),
         "refined": ("What came of it (mm)", refinement.refined),

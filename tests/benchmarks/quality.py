@@ -20,9 +20,10 @@ from pinwarp.core.prediction import prediction_of
 from pinwarp.core.quality import leave_one_out, penalty_curve
 from pinwarp.core.spline import solve
 from pinwarp.core.surface_distance import SurfaceIndex, compare_surfaces
-from pinwarp.core.suspects import suspects, swapped_pairs
+from pinwarp.core.suspects import suspects
 from tests.benchmarks.shapes import landmark_pairs, surface_points, true_warp
 from tests.benchmarks.timing import in_turn
+from tests.core.mistaken import made_up
 
 Row = dict[str, Any]
 # Of the real femur that the aims were set for.
@@ -41,10 +42,12 @@ def judging() -> Iterator[Row]:
         yield {"what": "leave-one-out", "pairs": count} | in_turn(ways)
         curve = in_turn({"pinwarp": lambda f=factor, d=destination: penalty_curve(f, d)})
         yield {"what": "curve of 61 penalties", "pairs": count} | curve
-        yield (
-            {"what": "suspects and swaps", "pairs": count}
-            | in_turn({"pinwarp": lambda f=factor, d=destination: _findings(f, d)})
-        )
+    for count in (10, 25, 50, 200, 600):
+        for what, displaced in (("which pair is wrong", 0), ("the same, one displaced", 1)):
+            case = made_up(count, 0, displaced=displaced)
+            _ = case.factor.modes_at_landmarks
+            ways = {"pinwarp": lambda c=case: suspects(c.factor, c.destination)}
+            yield {"what": what, "pairs": count} | in_turn(ways)
     yield from _mapping()
 
 
@@ -56,10 +59,6 @@ def _one_by_one(source: np.ndarray, destination: np.ndarray) -> list[np.ndarray]
         warp = solve(factorise(source[others]), destination[others], 1.0)
         errors.append(destination[row] - warp.evaluate(source[row : row + 1])[0])
     return errors
-
-
-def _findings(factor, destination):
-    return suspects(factor, destination), swapped_pairs(factor, destination)
 
 
 def _mapping() -> Iterator[Row]:

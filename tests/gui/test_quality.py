@@ -11,7 +11,7 @@ from qtpy.QtWidgets import QApplication, QToolTip
 from tests.core.femur import femur_landmarks
 from tests.gui.test_landmark_table import NO_KEY, SHIFT, TableUser
 
-from pinwarp.core.findings import FindingKind
+from pinwarp.core.findings import Finding, FindingKind
 from pinwarp.core.landmarks import Landmark, Side, as_position
 from pinwarp.core.spline import factorise, solve
 from pinwarp.gui.painted.arrows import paint_arrow
@@ -20,7 +20,9 @@ from pinwarp.gui.style import theme
 from pinwarp.gui.table.columns import column_number
 from pinwarp.gui.table.model import SHARE
 from pinwarp.session import edits
+from pinwarp.session.judging.quality import NamedFinding
 
+OFF = "fovea_capitis"
 SWAPPED = {"lateral_epicondyle", "medial_condyle_posterior"}
 LEFT = Qt.MouseButton.LeftButton
 
@@ -72,6 +74,17 @@ def sample(user):
 @pytest.fixture
 def swapped(sample):
     session = edits.swap_destinations(sample.session, *sorted(SWAPPED))
+    sample.user.editor.replace_all(session, None)
+    sample.user.settle()
+    return sample
+
+
+@pytest.fixture
+def displaced(sample):
+    """The sample with a landmark placed far from where it belongs."""
+    mark = sample.session.landmark(OFF)
+    x, y, z = mark.destination
+    session = edits.move(sample.session, OFF, Side.DESTINATION, (x, y, z + 60))
     sample.user.editor.replace_all(session, None)
     sample.user.settle()
     return sample
@@ -212,46 +225,102 @@ def test_a_click_on_a_finding_selects_its_landmarks_and_looks_at_them(swapped):
 
 def test_keys_go_through_the_findings_and_to_their_buttons(femur):
     femur.press(Qt.Key.Key_N, SHIFT)
-    assert set(femur.selected()) == {"landmark_9", "landmark_3"}
     first = QApplication.focusWidget()
     assert first is femur.findings.rows[0]
+    assert femur.selected() == first.found.names
     QTest.keyClick(first, Qt.Key.Key_Down)
     second = QApplication.focusWidget()
     assert second is femur.findings.rows[1]
     QTest.keyClick(second, Qt.Key.Key_Return)
-    assert femur.selected() == second.found.names == ("landmark_12",)
+    (name,) = second.found.names
+    assert femur.selected() == (name,)
+    assert {*first.found.names, name} == {"landmark_9", "landmark_12"}
     QTest.keyClick(second, Qt.Key.Key_Tab)
+    assert QApplication.focusWidget() is second.remedy
+    QTest.keyClick(second.remedy, Qt.Key.Key_Tab)
     assert QApplication.focusWidget() is second.disable
     QTest.keyClick(second.disable, Qt.Key.Key_Space)
     femur.user.settle()
-    femur.undo("Disable landmark_12")
+    femur.undo(f"Disable {name}")
 
 
-def test_the_real_femur_names_the_inconsistent_pair_first_and_landmark_18_as_isolated(femur):
+def test_on_the_real_femur_nothing_is_wrong_two_are_worth_a_look_and_some_isolated(femur):
     rows = femur.findings.rows
-    assert femur.said_by(rows[0]) == (
-        "landmark_9 and landmark_3 are 8.77 mm apart on the source, 25.5 mm on the destination."
-    )
-    isolated = [row for row in rows if row.found.finding.kind is FindingKind.ISOLATED]
+    looks, isolated = rows[:2], rows[2:]
+    assert {row.found.names[0] for row in looks} == {"landmark_9", "landmark_12"}
+    assert all("from where the other pairs expect it" in femur.said_by(row) for row in looks)
+    assert all(row.remedy.text() == "Re-place" and row.disable.isVisible() for row in looks)
+    assert all(row.found.finding.kind is FindingKind.ISOLATED for row in isolated)
     assert "landmark_18" in [row.found.names[0] for row in isolated]
-    assert rows[-len(isolated) :] == isolated, "last"
     assert all(row.disable.isHidden() and row.remedy.isHidden() for row in isolated)
-    assert femur.findings.header.text() == f"2 to check, {len(isolated)} isolated"
+    header = femur.findings.header
+    assert header.text() == f"2 worth a look, {len(isolated)} isolated"
+    assert not header.font().bold(), "there is nothing wrong"
     femur.panel.filter.setText("isolated")
     assert "landmark_18" in femur.shown()
     femur.panel.filter.setText("suspect")
-    assert set(femur.shown()) == {"landmark_9", "landmark_3", "landmark_12"}
+    assert femur.shown() == []
+    femur.panel.filter.setText("worth")
+    assert set(femur.shown()) == {"landmark_9", "landmark_12"}
 
 
-def test_one_of_two_inconsistent_landmarks_is_disabled_from_a_menu(femur):
-    row = femur.findings.rows[0]
-    assert [a.text() for a in row.choice.actions()] == ["landmark_9", "landmark_3", "&Both"]
+# What is displaced
+
+
+def test_a_displaced_landmark_is_named_and_can_be_disabled(displaced):
+    row = displaced.findings.rows[0]
+    assert (row.found.finding.kind, row.found.names) == (FindingKind.DISPLACED, (OFF,))
+    assert "mm from where the other pairs expect it; " in displaced.said_by(row)
+    assert "without a mistake shows as much about once in 1,000" in displaced.tip(OFF)
+    displaced.click_on(row.disable)
+    assert not displaced.session.landmark(OFF).enabled
+    assert displaced.findings.isHidden()
+    displaced.undo(f"Disable {OFF}")
+
+
+def test_re_place_selects_the_landmark_and_shows_where_the_others_expect_it(displaced):
+    displaced.user.editor.look(arrows=False)
+    before = displaced.session
+    displaced.click_on(displaced.findings.rows[0].remedy)
+    assert displaced.selected() == (OFF,)
+    assert displaced.user.editor.selection.side is Side.DESTINATION
+    (arrow,) = displaced.arrows(left_out=True).values()
+    there = displaced.window.viewports[Side.DESTINATION]
+    for place in (arrow.start, arrow.end):
+        x, y = there.project(np.array([place]))[0]
+        assert there.rect().contains(QPoint(round(x), round(y))), "both ends are in sight"
+    assert f"where the other pairs expect {OFF}" in displaced.said()
+    assert displaced.session == before, "nothing is moved but by the hand"
+
+
+def test_of_two_that_may_be_wrong_one_is_chosen_from_a_menu(displaced):
+    panel, names = displaced.findings, (OFF, "lateral_epicondyle")
+    rows = [[x.name for x in displaced.session.pairs].index(name) for name in names]
+    finding = Finding(FindingKind.EITHER, tuple(rows), 0.01, (30.0, 4.0))
+    panel.show_findings([NamedFinding(finding, names, finding.describe())])
+    row = panel.rows[0]
+    assert [a.text() for a in row.choice.actions()] == list(names), "not both"
+    QTest.mousePress(row.remedy, LEFT, NO_KEY, row.remedy.rect().center())
+    displaced.choose(row.which, names[1])
+    assert displaced.selected() == (names[1],)
     QTest.mousePress(row.disable, LEFT, NO_KEY, row.disable.rect().center())
-    femur.choose(row.choice, "landmark_9")
-    assert not femur.session.landmark("landmark_9").enabled
-    assert femur.session.landmark("landmark_3").enabled
-    assert all("landmark_9" not in row.found.names for row in femur.findings.rows)
-    femur.undo("Disable landmark_9")
+    displaced.choose(row.choice, OFF)
+    assert not displaced.session.landmark(OFF).enabled
+    assert displaced.session.landmark(names[1]).enabled
+
+
+def test_in_a_drag_the_figures_follow_and_the_list_waits_for_the_hand(displaced):
+    editor = displaced.user.editor
+    before = displaced.text(OFF, "left_out")
+    (row,) = [x for x in displaced.findings.rows if x.found.names == (OFF,)]
+    x, y, z = displaced.session.landmark(OFF).destination
+    editor.preview(edits.move(editor.committed, OFF, Side.DESTINATION, (x, y, z - 60)))
+    displaced.user.settle()
+    assert displaced.text(OFF, "left_out") != before
+    assert row.found.finding.kind is FindingKind.DISPLACED
+    editor.commit(editor.session, "Move")
+    displaced.user.settle()
+    assert displaced.findings.isHidden()
 
 
 def test_many_findings_scroll_in_a_third_of_the_dock(femur):

@@ -195,13 +195,14 @@ def test_every_kind_of_finding_has_one_severity():
     assert wrong == {
         FindingKind.MIRRORED,
         FindingKind.SWAPPED,
-        FindingKind.INCONSISTENT,
-        FindingKind.SUSPECT,
+        FindingKind.DISPLACED,
+        FindingKind.EITHER,
         FindingKind.CONFLICT,
         FindingKind.FOLD,
     }
     assert {kind for kind in FindingKind if kind.severity is Severity.REMARK} == {
-        FindingKind.ISOLATED
+        FindingKind.WORTH_A_LOOK,
+        FindingKind.ISOLATED,
     }
 
 

@@ -78,14 +78,13 @@ def batch(
         typer.Option(
             "--format",
             metavar="SUFFIX",
-            help="Of the warped meshes: stl, ply, obj, vtp, off, glb, 3mf ...; without it the source's.",
+            help="Of the warped meshes, such as stl, ply, vtp or glb; without it the source's.",
             show_default=False,
         ),
     ] = None,
     suggest: Annotated[
         bool,
         typer.Option(
-            help="Of the warped meshes, such as stl, ply, vtp or glb; without it the source's.",
             help="Suggest the landmarks that a subject lacks, from the shapes of the bones. "
             "NAME.pinwarp.csv then is the session in which to look at them: the next run warps the "
             "subject by what you made of it, and never replaces it. Subjects that the shapes "

@@ -34,7 +34,7 @@ def check(
         bool,
         typer.Option(
             "--strict",
-            help="Exit with 1 where pairs look wrong (suspect, inconsistent, swapped, mirrored, "
+            help="Exit with 1 where pairs look wrong (displaced, one of two, swapped, mirrored, "
             "in conflict), landmarks are in another frame or unit than their mesh, or the warp "
             "folds.",
         ),

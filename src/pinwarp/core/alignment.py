@@ -36,7 +36,11 @@ class Similarity:
 
 @quiet
 def fit_similarity(
-    source: ArrayLike, destination: ArrayLike, *, scaling: bool = True
+    source: ArrayLike,
+    destination: ArrayLike,
+    *,
+    scaling: bool = True,
+    weights: ArrayLike | None = None,
 ) -> Similarity:
     """Fit a similarity (or rigid motion) in the least-squares sense, without reflection.
 
@@ -49,6 +53,8 @@ def fit_similarity(
         (n, 3) positions, row by row the same places, n >= 1.
     scaling
         False for a rigid motion.
+    weights
+        (n,) how much the square of each distance counts; all the same without them.
 
     Returns
     -------
@@ -62,13 +68,15 @@ def fit_similarity(
     """
     u = np.asarray(source, dtype=np.float64)
     v = np.asarray(destination, dtype=np.float64)
-    centre, target = u.mean(axis=0), v.mean(axis=0)
+    share = np.ones(len(u)) if weights is None else np.asarray(weights, dtype=np.float64)
+    centre, target = (np.average(side, axis=0, weights=share) for side in (u, v))
+    share = share[:, None]
     u, v = u - centre, v - target
     size_u, size_v = float(np.abs(u).max(initial=0)), float(np.abs(v).max(initial=0))
     if size_u == 0 or size_v == 0:
         return Similarity(np.eye(3), 1.0, target - centre)
     u, v = u / size_u, v / size_v
-    correlation = v.T @ u
+    correlation = (share * v).T @ u
     U, values, Vt = np.linalg.svd(correlation)
     rank = int(np.sum(values > 1e-9 * values[0])) if values[0] > 0 else 0
     if rank == 0:
@@ -80,7 +88,7 @@ def fit_similarity(
         rotation = U @ np.diag([1.0, 1.0, handedness]) @ Vt
     scale = 1.0
     if scaling:
-        fitted = float(np.trace(rotation.T @ correlation) / np.sum(u * u)) * size_v / size_u
+        fitted = float(np.trace(rotation.T @ correlation) / np.sum(share * u * u)) * size_v / size_u
         # A mirrored set can ask for a vanishing scale: that would collapse the mesh.
         scale = fitted if fitted > 1e-6 * size_v / size_u else size_v / size_u
     return Similarity(rotation, scale, target - scale * rotation @ centre)

@@ -23,6 +23,8 @@ class Severity(IntEnum):
     WRONG = 2
 
 
+# A chance smaller than one in so many is no better known.
+RAREST = 1000
 # Of more landmarks than this a sentence names the first, and says how many more there are.
 MOST_NAMED = 4
 
@@ -41,11 +43,12 @@ class FindingKind(StrEnum):
     NEARLY_PLANAR = "nearly planar"
     POLE = "pole"
     FOLD = "fold"
-    INCONSISTENT = "inconsistent"
-    SUSPECT = "suspect"
-    ISOLATED = "isolated"
-    SWAPPED = "swapped"
     MIRRORED = "mirrored"
+    SWAPPED = "swapped"
+    DISPLACED = "displaced"
+    EITHER = "either of two"
+    WORTH_A_LOOK = "worth a look"
+    ISOLATED = "isolated"
     SUGGESTED = "suggested"
     ELSEWHERE = "elsewhere"
 
@@ -53,7 +56,7 @@ class FindingKind(StrEnum):
     def severity(self) -> Severity:
         """How bad it is: what lists, marks, their order and strict checks go by."""
         match self:
-            case FindingKind.ISOLATED:
+            case FindingKind.WORTH_A_LOOK | FindingKind.ISOLATED:
                 return Severity.REMARK
             case (
                 FindingKind.CLOSE
@@ -80,16 +83,16 @@ class Finding:
         The figure that goes with it: for a conflict the largest distance on the destination, for
         close landmarks the smallest on the source (mesh units), for nearly planar landmarks the
         ratio of the smallest to the largest extent, for a pole its penalty (mesh units), for a
-        fold the number of its vertices. For inconsistent landmarks their distance on the source,
-        for a suspect its standardised leave-one-out error, for an isolated landmark the distance
-        to the nearest, for swapped or mirrored ones the share of the error that is left when that
-        is put right, for suggested destinations how many there are. For landmarks elsewhere, in
-        another frame or unit than their mesh, the median distance from it.
+        fold the number of its vertices. For swapped or displaced pairs, either of two and what is
+        worth a look, the chance that a set without a mistake shows as much; for an isolated
+        landmark the distance to the nearest; for a mirrored set what a reflection leaves of the
+        misfit, for suggested destinations how many there are. For landmarks elsewhere, in another
+        frame or unit than their mesh, the median distance from it.
     others
-        Further figures: for inconsistent landmarks their distance on the destination, for a
-        suspect or isolated landmark its leave-one-out error (mesh units), for suggested
-        destinations of how many they are, for landmarks elsewhere their distance when they are
-        read right.
+        Further figures (mesh units): for a displaced pair, either of two and what is worth a look
+        how far it lies from where the other pairs expect it and how far is usual there; for an
+        isolated landmark its leave-one-out error; for suggested destinations of how many they are,
+        for landmarks elsewhere their distance when they are read right.
     """
 
     kind: FindingKind
@@ -122,9 +125,13 @@ class Finding:
         >>> Finding(FindingKind.CONFLICT, (0, 1), 2.5).describe(["apex", "tip"], "mm")
         'apex and tip lie at the same place on the source but 2.5 mm apart on the destination.'
         """
-        who = _who([names[row] if names else f"landmark {row}" for row in self.rows])
+        told = [names[row] if names else f"landmark {row}" for row in self.rows]
+        who = _who(told)
         length = f"{self.value:.4g} {unit}".rstrip()
-        other = f"{self.others[0]:.3g} {unit}".rstrip() if self.others else ""
+        other, usual = (
+            *(f"{figure:.3g} {unit}".rstrip() for figure in self.others),
+            *("", ""),
+        )[:2]
         match self.kind:
             case FindingKind.CONFLICT:
                 apart = length if len(self.rows) == 2 else f"up to {length}"
@@ -149,14 +156,6 @@ class Finding:
                 fold = "1 vertex folds" if self.value == 1 else f"{self.value:,.0f} vertices fold"
                 near = f" near {who}" if who else ""
                 return f"{fold}{near}: the warp turns the surface inside out there."
-            case FindingKind.INCONSISTENT:
-                near = f"{self.value:.3g} {unit}".rstrip()
-                return f"{who} are {near} apart on the source, {other} on the destination."
-            case FindingKind.SUSPECT:
-                return (
-                    f"{who} lies {other} from where the other pairs expect it, "
-                    f"{self.value:.1f} times what is usual for its surroundings."
-                )
             case FindingKind.ISOLATED:
                 free = f"{_round_down(self.value)} {unit}".rstrip()
                 return (
@@ -165,8 +164,28 @@ class Finding:
                 )
             case FindingKind.SWAPPED:
                 return (
-                    f"{who} look swapped: exchanging their destinations lowers the "
-                    f"leave-one-out error to {self.value:.0%}."
+                    f"{who} look swapped: exchanging their destinations explains the set better "
+                    f"than any single displaced pair. The other pairs were judged "
+                    "with them put right."
+                )
+            case FindingKind.DISPLACED:
+                return (
+                    f"{who} lies {other} from where the other pairs expect it; {usual} is usual "
+                    f"there. A set without a mistake shows as much about once in "
+                    f"{_times(self.value)}. The other pairs were judged without it."
+                )
+            case FindingKind.EITHER:
+                return (
+                    f"{' or '.join(told)} is wrong: leaving out either explains the set "
+                    f"about equally well. {told[0]} lies {other} from where the other pairs "
+                    f"expect it; {usual} is usual there. The other pairs were judged without "
+                    f"{told[0]}."
+                )
+            case FindingKind.WORTH_A_LOOK:
+                return (
+                    f"{who} lies {other} from where the other pairs expect it; {usual} is usual "
+                    f"there. About one set without a mistake in {_times(self.value)} has such a "
+                    "pair."
                 )
             case FindingKind.MIRRORED:
                 return (
@@ -206,11 +225,17 @@ def gravest_first(found: Iterable[_Found]) -> tuple[_Found, ...]:
 
     Examples
     --------
-    >>> kinds = [FindingKind.ISOLATED, FindingKind.CLOSE, FindingKind.SUSPECT, FindingKind.FOLD]
+    >>> kinds = [FindingKind.ISOLATED, FindingKind.CLOSE, FindingKind.EITHER, FindingKind.FOLD]
     >>> [one.kind.value for one in gravest_first(Finding(kind, (), 1.0) for kind in kinds)]
-    ['suspect', 'fold', 'close', 'isolated']
+    ['either of two', 'fold', 'close', 'isolated']
     """
     return tuple(sorted(found, key=lambda one: -one.severity))
+
+
+def _times(chance: float) -> str:
+    """Say about how often a chance comes true: once in so many."""
+    times = 1 / max(chance, 1 / RAREST)
+    return f"{times:,.0f}" if times < 10 else f"{float(f'{times:.1g}'):,.0f}"
 
 
 def _round_down(value: float) -> str:

@@ -1,148 +1,68 @@
 """Which pairs are wrong, and in what way: facts to show beside the landmarks, never acted upon.
 
-A wrong pair is told from one that is merely far from the others by its standardised
-leave-one-out error (:mod:`pinwarp.core.quality`): the plain error is large for both. The limits
-are measured on made-up bones of 6 to 40 pairs with 3 mm of noise: one pair in a hundred is
-suspected wrongly, one set in a hundred has a swap that is none.
+Explanations compete by their likelihood: nothing wrong, one pair displaced, two exchanged. The
+best is taken if sets without a mistake hardly ever show as much, its pairs are left out or put
+right, and the others are judged again without them. A displaced pair must be strange whether the
+bones differ as roughly as the spline supposes or smoothly: of either field alone, one clean set
+in ten has such a pair.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from itertools import chain
+from math import comb
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.distance import cdist
 
-from pinwarp.core.alignment import fit_similarity
-from pinwarp.core.factor import RANK_TOLERANCE, SourceFactor
+from pinwarp.core.chance import Chance
+from pinwarp.core.evidence import Evidence
+from pinwarp.core.exchanges import best_exchange
+from pinwarp.core.factor import SourceFactor
 from pinwarp.core.findings import Finding, FindingKind
-from pinwarp.core.positions import as_positions, quiet
-from pinwarp.core.quality import ROUNDING, LeaveOneOut, leave_one_out
-from pinwarp.core.spline import Spline, check_penalty, displacements, solve
+from pinwarp.core.positions import quiet
+from pinwarp.core.quality import ROUNDING
+from pinwarp.core.spline import displacements
+from pinwarp.core.witnesses import LEAST_FREEDOM, Witnesses
 
 Matrix = NDArray[np.float64]
 
-# Standardised leave-one-out errors from which a pair is suspected by itself ...
-SUSPICIOUS = 2.5
-# ... and together with a neighbour that lies elsewhere on the destination than on the source:
-NOTICEABLE = 1.5
-# their distance is so many times what the affine fit makes of it, or that fraction,
-TORN = 2.5
-# and the neighbour's figure at least this share of its own: else it alone is wrong.
-COMPARABLE = 0.5
-# A pair whose error may be expected to be so many times the median pair's is isolated.
-ISOLATED = 1.5
-# What an exchange must leave of the squared leave-one-out errors to be called a swap.
-SHARPLY = 0.7
-# What a reflection must leave of the misfit of the best rotation.
-MIRRORED = 0.5
+# How often a set without a mistake may show as much: for a finding, and for a remark.
+STRICT, WORTH_A_LOOK = 0.07, 0.4
+# In sets of less freedom than this the tail is hardly known: a finding must be clearer.
+LEARNT = 12
+# No more than this share of the pairs is called wrong.
+MOST_WRONG = 0.3
+# Explanations closer than this many nats are not told apart; so many are looked at.
+ALIKE, LOOKED_AT = 1.0, 3
+# What each free coordinate of a displaced pair costs against an exchange, in nats.
+FREE_COORDINATE = 2.0
+# Up to so many pairs, some that hide one another are looked for, and so many of them; in more
+# pairs, each of two exchanged must be as unlikely as this by itself.
+FEW, MOST_HIDDEN, DOUBTFUL = 40, 3, 0.02
+# Exchanges are tried among so many of the strangest pairs.
+EXCHANGED = 60
 
 
 @quiet
-def suspects(
-    factor: SourceFactor,
-    destination: ArrayLike,
-    penalty: float = 0.0,
-    *,
-    left_out: LeaveOneOut | None = None,
-    fit: Spline | None = None,
-) -> tuple[Finding, ...]:
-    """Judge every pair by what the others say about it.
+def suspects(factor: SourceFactor, destination: ArrayLike) -> tuple[Finding, ...]:
+    """Judge the pairs by what they say about one another, at no penalty.
 
     Parameters
     ----------
     factor
         The source landmarks, from :func:`~pinwarp.core.factor.factorise`.
     destination
-        (n, 3) destination landmarks.
-    penalty
-        The warping penalty of the regularising convention, in mesh units.
-    left_out
-        The same pairs' leave-one-out errors at that penalty, where they are known already.
-    fit
-        Their affine fit, where it is.
+        (n, 3) destination landmarks, in mesh units.
 
     Returns
     -------
     tuple of Finding
-        The most suspicious first, each landmark at most once: INCONSISTENT, two neighbours on
-        one bone that are not so on the other; SUSPECT, one by itself; ISOLATED, missed by more
-        than most but only because it is far from the others.
-
-    Examples
-    --------
-    >>> from pinwarp.core.factor import factorise
-    >>> source = np.random.default_rng(0).normal(size=(12, 3))
-    >>> destination = source + 0.1 * np.sin(source)
-    >>> destination[5] += [0, 1, 0]
-    >>> first = suspects(factorise(source), destination)[0]
-    >>> first.kind.value, first.rows
-    ('suspect', (5,))
-    """
-    result = left_out or leave_one_out(factor, destination, penalty)
-    target = np.asarray(destination, dtype=np.float64)
-    linear = (fit or solve(factor, target, np.inf)).affine[1:]
-    apart, ends = cdist(factor.source, factor.source), cdist(target, target)
-    # The affine fit knows how the bones differ along each axis, the median cannot be led astray.
-    fitted = cdist(factor.source @ linear, factor.source @ linear)
-    usual = float(np.median(ends[apart > 0] / apart[apart > 0])) if apart.any() else 1.0
-    torn = np.minimum(_torn(fitted, ends), _torn(usual * apart, ends))
-    np.fill_diagonal(apart, np.inf)
-    np.fill_diagonal(ends, np.inf)
-    figures = np.nan_to_num(result.standardised)
-    found: list[Finding] = []
-    named: set[int] = set()
-    for i in np.argsort(-figures).tolist():
-        if i in named or not np.isfinite(result.distances[i]):
-            continue
-        neighbours = [int(apart[i].argmin()), int(ends[i].argmin())]
-        j = max(neighbours, key=lambda row: float(torn[i, row]))
-        if (
-            torn[i, j] > TORN
-            and figures[i] > NOTICEABLE
-            and figures[j] > COMPARABLE * figures[i]
-            and j not in named
-        ):
-            near, far = float(apart[i, j]), float(ends[i, j])
-            found.append(Finding(FindingKind.INCONSISTENT, (i, j), near, (far,)))
-            named.update((i, j))
-            continue
-        missed = float(result.distances[i])
-        if figures[i] > SUSPICIOUS:
-            found.append(Finding(FindingKind.SUSPECT, (i,), float(figures[i]), (missed,)))
-        elif result.expected[i] > ISOLATED and missed > result.rms:
-            found.append(Finding(FindingKind.ISOLATED, (i,), float(apart[i].min()), (missed,)))
-        named.add(i)
-    return tuple(found)
-
-
-def _torn(fitted: Matrix, ends: Matrix) -> Matrix:
-    """Return by how much distances differ, as a factor of 1 or more; 1 where both are 0."""
-    largest, smallest = np.maximum(fitted, ends), np.minimum(fitted, ends)
-    torn = np.full_like(largest, np.inf)
-    np.divide(largest, smallest, out=torn, where=smallest > 0)
-    torn[largest <= ROUNDING * largest.max(initial=0.0)] = 1.0
-    return torn
-
-
-@quiet
-def swapped_pairs(
-    factor: SourceFactor, destination: ArrayLike, penalty: float = 0.0
-) -> tuple[Finding, ...]:
-    """Find pairs whose destinations look exchanged with one another.
-
-    All exchanges are tried at once: with ``e = H y`` the leave-one-out errors, exchanging i and
-    j adds ``(H_i - H_j)(y_j - y_i)^T``, so the sum of squares follows from ``H^T H``, ``H^T e``
-    and the distances. The best exchange is made in thought and the search repeated.
-
-    Parameters
-    ----------
-    factor, destination, penalty
-        As for :func:`suspects`.
-
-    Returns
-    -------
-    tuple of Finding
-        SWAPPED, the clearest first, each landmark at most once. Nothing below six pairs.
+        In the order in which they were found, the clearest first, each landmark at most once:
+        SWAPPED, DISPLACED, EITHER (one of two), then WORTH_A_LOOK. Nothing below seven pairs in
+        space, six in a plane.
 
     Examples
     --------
@@ -150,72 +70,185 @@ def swapped_pairs(
     >>> source = np.random.default_rng(0).normal(size=(12, 3))
     >>> destination = source + 0.1 * np.sin(source)
     >>> destination[[3, 7]] = destination[[7, 3]]
-    >>> [sorted(finding.rows) for finding in swapped_pairs(factorise(source), destination)]
-    [[3, 7]]
+    >>> destination[5] += [0, 1, 0]
+    >>> for finding in suspects(factorise(source), destination):
+    ...     print(finding.kind.value, sorted(finding.rows))
+    swapped [3, 7]
+    displaced [5]
     """
-    target, _, _ = displacements(factor, destination)
-    modes = factor.modes_at_landmarks
-    # With a single mode almost anything can be explained.
-    if np.sum(factor.usable_modes) < 2:
+    unexplained, _, _ = displacements(factor, destination)
+    target = np.asarray(destination, dtype=np.float64)
+    rounding = ROUNDING * float(np.abs(target).max())
+    target = target - target.mean(axis=0)
+    unit = float(np.linalg.norm(target))
+    if np.sum(factor.usable_modes) < LEAST_FREEDOM or not unit:
         return ()
-    certainty, _ = factor.certainty(np.array([check_penalty(penalty)]))
-    G = (modes * certainty[:, 0]) @ modes.T
-    free = np.sum(modes * modes, axis=1) > RANK_TOLERANCE**2
-    free &= np.diag(G) > RANK_TOLERANCE**2 * np.diag(G).max()
-    H = np.where(free[:, None], G / np.where(free, np.diag(G), 1.0)[:, None], 0.0)
-    gram = H.T @ H
-    lengths = np.diag(gram)[:, None] + np.diag(gram) - 2 * gram
-    negligible = len(target) * (ROUNDING * float(np.abs(np.asarray(destination)).max())) ** 2
-    found: list[Finding] = []
-    while True:
-        errors = H @ target
-        before = float(np.sum(errors * errors))
-        if before <= negligible:
-            return tuple(found)
-        after = before + _exchange(H.T @ errors, target) + lengths * cdist(target, target) ** 2
-        after[~free] = after[:, ~free] = np.inf
-        np.fill_diagonal(after, np.inf)
-        i, j = (int(row) for row in np.unravel_index(after.argmin(), after.shape))
-        if not after[i, j] < SHARPLY * before:
-            return tuple(found)
-        remaining = float(np.sqrt(max(after[i, j], 0.0) / before))
-        found.append(Finding(FindingKind.SWAPPED, (i, j), remaining))
-        target[[i, j]] = target[[j, i]]
-        free[[i, j]] = False
+    bent = factor.modes_at_landmarks.T @ unexplained
+    if float(np.linalg.norm(bent)) <= rounding * np.sqrt(len(target)):
+        # An affine map meets every pair: what is left is rounding.
+        return ()
+    search = _Search(factor, target / unit, unit)
+    return _settled(chain(search.mistakes(), search.remarks()))
 
 
-def _exchange(pulls: Matrix, target: Matrix) -> Matrix:
-    """Return ``2 (q_i - q_j) . (y_j - y_i)`` for all i and j."""
-    across = pulls @ target.T
-    own = np.diag(across)
-    return np.asarray(2 * (across + across.T - own[:, None] - own))
+def _settled(found: Iterable[Finding]) -> tuple[Finding, ...]:
+    """Of two of which either was wrong, name the one alone where the other is named by itself."""
+    settled: list[Finding] = []
+    named: set[int] = set()
+    for finding in reversed(list(found)):
+        if finding.kind is FindingKind.EITHER and named.intersection(finding.rows):
+            finding = replace(finding, kind=FindingKind.DISPLACED, rows=finding.rows[:1])
+        named.update(finding.rows)
+        settled.append(finding)
+    return tuple(reversed(settled))
 
 
-@quiet
-def is_mirrored(source: ArrayLike, destination: ArrayLike) -> bool:
-    """Whether a reflection fits the pairs far better than a rotation: left and right bones.
+class _Search:
+    """Finds one explanation after the other."""
 
-    Parameters
-    ----------
-    source, destination
-        (n, 3) positions, row by row the same landmarks; with fewer than four, or all in one
-        plane, there is no telling.
+    def __init__(self, factor: SourceFactor, destination: Matrix, unit: float) -> None:
+        self._pairs = Witnesses(factor, destination)
+        self._unit = unit
+        self._left_out: list[int] = []
+        self._free = np.ones(len(destination), dtype=np.bool_)
 
-    Examples
-    --------
-    >>> source = np.random.default_rng(0).normal(size=(8, 3))
-    >>> is_mirrored(source, 1.1 * source * [1, 1, -1]), is_mirrored(source, 1.1 * source)
-    (True, False)
-    """
-    u = as_positions(source, "source landmark")
-    v = as_positions(destination, "destination landmark")
-    if len(u) < 4:
+    def mistakes(self) -> Iterator[Finding]:
+        """Yield what sets without a mistake hardly ever show."""
+        while self._may_go_on():
+            seen = self._without()
+            if self._free_count(seen) == 0:
+                return
+            exchange = self._exchanged(seen)
+            found = [exchange] if exchange else self._one_or_two(seen, _strict(seen))
+            if not found and len(self._free) <= FEW:
+                found = self._hidden(seen)
+            if not found:
+                return
+            yield from found
+
+    def remarks(self) -> Iterator[Finding]:
+        """Yield what some of them show as well."""
+        while self._may_go_on():
+            found = self._one_or_two(self._without(), WORTH_A_LOOK)
+            if not found:
+                return
+            yield from (replace(x, kind=FindingKind.WORTH_A_LOOK, rows=x.rows[:1]) for x in found)
+
+    # What is left
+
+    def _may_go_on(self) -> bool:
+        named = int(np.sum(~self._free))
+        freedom = self._pairs.freedom - len(self._left_out)
+        return named < max(1, MOST_WRONG * len(self._free)) and freedom >= LEAST_FREEDOM
+
+    def _without(self, *rows: int) -> Evidence:
+        out = tuple(sorted((*self._left_out, *rows)))
+        return self._pairs.without(out)
+
+    def _free_count(self, seen: Evidence) -> int:
+        return int(np.sum(seen.kept & self._free))
+
+    def _leave_out(self, row: int) -> None:
+        self._left_out.append(row)
+        self._free[row] = False
+
+    # One pair, or one of two
+
+    def _one_or_two(self, seen: Evidence, limit: float) -> list[Finding]:
+        """Find the pair whose leaving out explains most, or the two that do so equally well."""
+        count = self._free_count(seen)
+        judged = [
+            (row, self._pairs.agreed(seen, row, limit / count))
+            for row in self._strangest(seen, ALIKE)
+        ]
+        passed = sorted((x for x in judged if x[1].value * count < limit), key=lambda x: x[1].value)
+        if not passed:
+            return []
+        rows = tuple(row for row, _ in passed[:2])
+        self._leave_out(rows[0])
+        return [self._finding(rows, passed[0][1], passed[0][1].value * count)]
+
+    def _strangest(self, seen: Evidence, within: float = np.inf) -> list[int]:
+        """Return the rows whose leaving out explains most, the best first."""
+        alone = np.where(seen.kept & self._free, seen.one_wrong[:, seen.level], -np.inf)
+        order = np.argsort(-alone)[:LOOKED_AT].tolist()
+        return [row for row in order if alone[row] > max(alone[order[0]] - within, -np.inf)]
+
+    def _hidden(self, seen: Evidence) -> list[Finding]:
+        """Find a few pairs that hide one another: each is judged without the others."""
+        count = self._free_count(seen)
+        for number in range(2, MOST_HIDDEN + 1):
+            if seen.freedom < LEAST_FREEDOM + number:
+                return []
+            choices = comb(count, number)
+            limit = _strict(seen) / choices
+            # Of more than two only those that the strangest leads to.
+            starts = self._strangest(seen)[: LOOKED_AT if number == 2 else 1]
+            found = [judged for first in starts if (judged := self._each(first, number, limit))]
+            if found:
+                best = min(found, key=_worst)
+                for row, _ in best:
+                    self._leave_out(row)
+                return [
+                    self._finding((row,), chance, _worst(best) * choices) for row, chance in best
+                ]
+        return []
+
+    def _each(self, first: int, number: int, limit: float) -> list[tuple[int, Chance]]:
+        """Judge each of so many pairs without the others; nothing where one is ordinary."""
+        rows = [first]
+        while len(rows) < number:
+            following = self._strangest(self._without(*rows))
+            if not following:
+                return []
+            rows.append(following[0])
+        judged = []
+        for row in reversed(rows):
+            others = self._without(*(other for other in rows if other != row))
+            chance = self._pairs.agreed(others, row, limit)
+            if chance.value >= limit:
+                return []
+            judged.append((row, chance))
+        return judged
+
+    def _finding(self, rows: tuple[int, ...], chance: Chance, of_a_set: float) -> Finding:
+        shift, usual = chance.shift * self._unit, chance.usual * self._unit
+        kind = FindingKind.DISPLACED if len(rows) == 1 else FindingKind.EITHER
+        return Finding(kind, rows, of_a_set, (shift, usual))
+
+    # Two exchanged
+
+    def _exchanged(self, seen: Evidence) -> Finding | None:
+        """Find two pairs whose exchange explains more than any single displaced one."""
+        free = seen.kept & self._free
+        count = int(np.sum(free))
+        strange = np.where(free, seen.gains.max(axis=1), -1.0)
+        rows = np.argsort(-strange)[: min(EXCHANGED, count)]
+        if count < 2:
+            return None
+        before = float(seen.nothing_wrong.max())
+        likely, i, j = best_exchange(seen, rows)
+        gain = likely - before - np.log(count * (count - 1) / 2)
+        alone = float(seen.one_wrong[free].max()) - before - np.log(count) - 3 * FREE_COORDINATE
+        if gain <= max(0.0, alone) or (len(free) > FEW and self._doubtful(i, j)):
+            return None
+        self._pairs.exchange(i, j)
+        self._free[[i, j]] = False
+        return Finding(FindingKind.SWAPPED, (i, j), float(np.exp(-gain)))
+
+    def _doubtful(self, i: int, j: int) -> bool:
+        """Whether one of two is ordinary with the other left out."""
+        for out, row in ((i, j), (j, i)):
+            others = self._without(out)
+            if others.kept[row] and self._pairs.chance(others, row).value >= DOUBTFUL:
+                return True
         return False
-    turned, reflected = (
-        float(np.linalg.norm(fit_similarity(side, v).apply(side) - v))
-        for side in (u, u * [-1, 1, 1])
-    )
-    # Met either way: a plane, or a single place.
-    if turned <= 1e-6 * float(np.linalg.norm(v - v.mean(axis=0))):
-        return False
-    return reflected < MIRRORED * turned
+
+
+def _worst(judged: list[tuple[int, Chance]]) -> float:
+    return max(chance.value for _, chance in judged)
+
+
+def _strict(seen: Evidence) -> float:
+    """Return how often clean sets of such a size may show as much as a finding."""
+    return STRICT * min(1.0, (seen.freedom + LEAST_FREEDOM) / (LEARNT + LEAST_FREEDOM))

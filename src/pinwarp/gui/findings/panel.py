@@ -24,12 +24,12 @@ from qtpy.QtWidgets import (
 
 from pinwarp.core.findings import FindingKind
 from pinwarp.gui.style import theme
-from pinwarp.gui.style.icons import icon
+from pinwarp.gui.table.columns import finding_icon
 from pinwarp.session.judging.elsewhere import Elsewhere
 from pinwarp.session.judging.quality import NamedFinding
 
-# Both of these may be wrong; of others one is enough.
-_BOTH = (FindingKind.SWAPPED, FindingKind.INCONSISTENT)
+# What is put right by placing a landmark anew, if it is wrong.
+_REPLACED = (FindingKind.DISPLACED, FindingKind.EITHER, FindingKind.WORTH_A_LOOK)
 # Longer words than this are broken anywhere.
 _LONGEST_WORD = 24
 _SIGN = 16
@@ -46,6 +46,7 @@ class FindingRow(QFrame):
     swap_requested = Signal()
     mirror_requested = Signal()
     reading_requested = Signal()
+    replace_requested = Signal(str)
     disable_requested = Signal(list)
 
     def __init__(self) -> None:
@@ -66,6 +67,7 @@ class FindingRow(QFrame):
         self.disable = QPushButton("Disable")
         self.disable.clicked.connect(self._on_disable)
         self.choice = QMenu(self.disable)
+        self.which = QMenu(self.remedy)
         self._lay_out()
 
     def _lay_out(self) -> None:
@@ -96,10 +98,13 @@ class FindingRow(QFrame):
         elif isinstance(found, Elsewhere):
             remedy = found.fit.action
             tip = f"Read all {found.side.value} landmarks another way; their mesh stays"
+        elif kind in _REPLACED:
+            remedy, tip = "Re-place", f"Show where the other pairs expect {' or '.join(names)}"
         self._show_button(self.remedy, remedy, tip)
+        may_sit_out = kind is not FindingKind.SUGGESTED and (grave or remedy)
         self._show_button(
             self.disable,
-            "Disable" if names and grave and kind is not FindingKind.SUGGESTED else "",
+            "Disable" if names and may_sit_out else "",
             f"Let {names[0]} take no part" if len(names) == 1 else "Let one of them take no part",
         )
         if self.found is None or (names, kind) != (self.found.names, self.found.finding.kind):
@@ -112,8 +117,7 @@ class FindingRow(QFrame):
         if not grave:
             palette.setColor(QPalette.ColorRole.WindowText, theme.quiet_text_colour())
         self.sentence.setPalette(palette)
-        sign = icon("warning", theme.WARNING_COLOUR) if grave else icon("isolated", theme.QUIET_INK)
-        self.sign.setPixmap(sign.pixmap(QSize(_SIGN, _SIGN)))
+        self.sign.setPixmap(finding_icon([found]).pixmap(QSize(_SIGN, _SIGN)))
 
     @staticmethod
     def _show_button(button: QPushButton, words: str, tip: str) -> None:
@@ -126,7 +130,7 @@ class FindingRow(QFrame):
         several = len(names) > 1
         self.disable.setMenu(self.choice if several else None)
         choices = [(name.replace("&", "&&"), [name]) for name in names[:MOST_CHOICES]]
-        if kind in _BOTH:
+        if kind is FindingKind.SWAPPED:
             choices.append(("&Both", list(names)))
         elif len(names) > 2:
             choices.append((f"&All but {names[0].replace('&', '&&')}", list(names[1:])))
@@ -134,6 +138,13 @@ class FindingRow(QFrame):
             action = self.choice.addAction(words)
             action.triggered.connect(
                 lambda _checked=False, chosen=chosen: self.disable_requested.emit(chosen)
+            )
+        self.which.clear()
+        self.remedy.setMenu(self.which if kind is FindingKind.EITHER else None)
+        for name in names if kind is FindingKind.EITHER else ():
+            action = self.which.addAction(name.replace("&", "&&"))
+            action.triggered.connect(
+                lambda _checked=False, name=name: self.replace_requested.emit(name)
             )
 
     def set_current(self, current: bool) -> None:
@@ -143,12 +154,18 @@ class FindingRow(QFrame):
             self.update()
 
     def _on_remedy(self) -> None:
-        if self.found is not None and self.found.finding.kind is FindingKind.SWAPPED:
-            self.swap_requested.emit()
-        elif isinstance(self.found, Elsewhere):
+        if isinstance(self.found, Elsewhere):
             self.reading_requested.emit()
-        else:
-            self.mirror_requested.emit()
+            return
+        if self.found is None:
+            return
+        match self.found.finding.kind:
+            case FindingKind.SWAPPED:
+                self.swap_requested.emit()
+            case FindingKind.MIRRORED:
+                self.mirror_requested.emit()
+            case FindingKind.DISPLACED | FindingKind.WORTH_A_LOOK:
+                self.replace_requested.emit(self.found.names[0])
 
     def _on_disable(self) -> None:
         if self.found is not None and len(self.found.names) == 1:
@@ -216,6 +233,7 @@ class FindingsPanel(QWidget):
     swap_requested = Signal(object)
     mirror_requested = Signal(str)
     reading_requested = Signal(object)
+    replace_requested = Signal(str)
     disable_requested = Signal(object, list)
 
     def __init__(self) -> None:
@@ -294,6 +312,7 @@ class FindingsPanel(QWidget):
         row.swap_requested.connect(lambda: self.swap_requested.emit(row.found))
         row.mirror_requested.connect(lambda: self.mirror_requested.emit(self._axis))
         row.reading_requested.connect(lambda: self.reading_requested.emit(row.found))
+        row.replace_requested.connect(self.replace_requested)
         row.disable_requested.connect(lambda names: self.disable_requested.emit(row.found, names))
 
     def show_selection(self, names: Sequence[str]) -> None:
@@ -346,12 +365,14 @@ def heading(found: Sequence[NamedFinding]) -> str:
     Examples
     --------
     >>> from pinwarp.core.findings import Finding
-    >>> kinds = (FindingKind.SUSPECT, FindingKind.ISOLATED, FindingKind.ISOLATED)
+    >>> kinds = (FindingKind.DISPLACED, FindingKind.ISOLATED, FindingKind.ISOLATED)
     >>> heading([NamedFinding(Finding(kind, (0,), 1.0), ("a",), "") for kind in kinds])
     '1 to check, 2 isolated'
     """
     grave = sum(one.finding.is_grave for one in found)
-    counts = ((grave, "to check"), (len(found) - grave, "isolated"))
+    worth = sum(one.finding.kind is FindingKind.WORTH_A_LOOK for one in found)
+    isolated = len(found) - grave - worth
+    counts = ((grave, "to check"), (worth, "worth a look"), (isolated, "isolated"))
     return ", ".join(f"{count} {words}" for count, words in counts if count)
 
 

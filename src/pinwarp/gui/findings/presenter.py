@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+import numpy as np
+
 from pinwarp.core.findings import FindingKind, gravest_first
+from pinwarp.core.landmarks import Side
 from pinwarp.core.mirror import axis_to_mirror
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
@@ -105,6 +108,7 @@ class FindingsPresenter(Capability):
         self.panel.swap_requested.connect(self._swap)
         self.panel.mirror_requested.connect(bones.mirror)
         self.panel.reading_requested.connect(self._read_otherwise)
+        self.panel.replace_requested.connect(self._show_expected)
         self.panel.disable_requested.connect(self._disable)
         maps.survey_shown.connect(self.fold_note.show_survey)
         quality.quality_changed.connect(self._on_quality)
@@ -233,6 +237,29 @@ class FindingsPresenter(Capability):
             session = fitted(self._editor.committed, found.side, found.fit)
             self._editor.commit(session, f"Correct {found.side.value} landmarks")
             self._say(f"{found.fit.describe()}: {self._undo_key} undoes it.")
+
+    def _show_expected(self, name: str) -> None:
+        """Select a landmark to be placed anew, and show where the other pairs expect it."""
+        quality, landmark = self._source.quality, self._editor.committed.landmark(name)
+        if landmark is None or landmark.destination is None:
+            return
+        self._table.panel.reveal((name,))
+        self._editor.select(name, side=Side.DESTINATION)
+        self._editor.look(arrows=True)
+        if quality is None or quality.left_out is None:
+            self._views.focus()
+            self._say(f"Check where {name} lies, and drag it where it belongs.")
+            return
+        row = pair_names(quality.inputs, self._editor.committed).index(name)
+        expected = np.array(landmark.destination) - quality.left_out.errors[row]
+        there = [landmark.destination, *([expected] if np.isfinite(expected).all() else [])]
+        self._views.focus_on(
+            {Side.SOURCE: np.array([landmark.source]), Side.DESTINATION: np.array(there)}
+        )
+        self._say(
+            f"The dashed arrow starts where the other pairs expect {name}: "
+            "drag it where it belongs, on either bone."
+        )
 
     def _disable(self, found: NamedFinding, names: Sequence[str]) -> None:
         if self._is_current(found):

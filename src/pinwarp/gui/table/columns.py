@@ -14,7 +14,7 @@ from typing import Any
 from qtpy.QtGui import QIcon
 
 from pinwarp.core.errors import LandmarkError
-from pinwarp.core.findings import Finding, FindingKind
+from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import Landmark, LandmarkState, Side
 from pinwarp.gui.painted.markers import state_icon
 from pinwarp.gui.style import theme
@@ -199,16 +199,23 @@ def _left_out_tip(row: Row) -> str:
     missed, times = row.values.get("left_out"), row.values.get("standardised")
     if missed is None or times is None or not math.isfinite(missed):
         return ""
-    # The same words for those that are not suspicious.
-    ordinary = Finding(FindingKind.SUSPECT, (0,), times, (missed,))
-    return ordinary.describe([row.landmark.name], row.unit)
+    length = f"{missed:.3g} {row.unit}".rstrip()
+    return (
+        f"{row.landmark.name} lies {length} from where the other pairs expect it, "
+        f"{times:.1f} times what is usual for its surroundings."
+    )
 
 
 def _sign(row: Row) -> QIcon | None:
-    if not row.findings:
-        return None
-    if any(found.finding.is_grave for found in row.findings):
+    return finding_icon(row.findings) if row.findings else None
+
+
+def finding_icon(findings: Sequence[NamedFinding]) -> QIcon:
+    """Return the sign of the gravest of some findings."""
+    if any(found.finding.is_grave for found in findings):
         return icon("warning", theme.WARNING_COLOUR)
+    if any(found.finding.kind is FindingKind.WORTH_A_LOOK for found in findings):
+        return icon("look", theme.QUIET_INK)
     return icon("isolated", theme.QUIET_INK)
 
 

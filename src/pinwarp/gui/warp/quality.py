@@ -43,7 +43,9 @@ class QualityPresenter(Capability):
 
     def _on_result(self, result: WarpResult, at_rest: bool, quality: Quality | None) -> None:
         if quality is not None:
-            self._on_quality(quality)
+            # In a drag the list stays as it was when the hand rested last.
+            judged = quality.judgement is not None
+            self._on_quality(quality if judged else quality.judged_as(self.quality))
             return
         if result.factor is not None and not result.factor.has_modes:
             # The eigenvalues follow once the hand rests, and this is asked again.

@@ -204,14 +204,17 @@ class Warps(Capability):
         return _Shaded(result, request.kind, warps, self._judge(result, request.kind))
 
     def _judge(self, result: WarpResult, kind: _Kind) -> Quality | None:
-        """Judge the pairs along with the warp, so that all figures appear in one go."""
+        """Judge the pairs along with the warp, so that all figures appear in one go.
+
+        Which of them is wrong takes longer to say, and waits until the hand rests.
+        """
         factor, now = result.factor, time.monotonic()
         if factor is None or not factor.has_modes or len(result.inputs.source) > EAGER_MODES:
             return None
         if kind is _Kind.PREVIEW and now - self._judged_at < TABLE_PAUSE:
             return None
         self._judged_at = now
-        return quality_of(result)
+        return quality_of(result, judge=kind is not _Kind.PREVIEW)
 
     def _shade(
         self,

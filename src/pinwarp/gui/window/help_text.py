@@ -31,12 +31,16 @@ penalty 0 it is zero for every pair, right or wrong: it says nothing about which
 <p>The <b>leave-one-out error</b> (Left out) does: the pair is taken away, the others alone carry
 the landmark, and this is how far they miss its destination. Select a landmark to see it as a
 dashed arrow.</p>
-<p>A landmark far from all others is missed by more, though nothing is wrong with it. So each
-error is <b>standardised</b>: compared with what is usual for such surroundings. One that is large
-even so makes a pair <b>suspect</b>; one that is large only because the landmark is alone makes it
-<b>isolated</b>, which is no fault: place another landmark nearby if that part matters.</p>
-<p>Few pairs can hardly contradict one another. In trials with one wrong pair among 6 it was found
-in 3 % of the cases, among 12 in 91 %: with fewer than a dozen an empty list is no proof.</p>
+<p>A landmark far from all others is missed by more, though nothing is wrong with it: it is
+<b>isolated</b>. Place another one nearby if that part matters. A <b>standardised</b> error is
+compared with what is usual for such surroundings.</p>
+<p>What makes a pair <b>suspect</b> is told below the table. Explanations compete: nothing is wrong,
+one pair is <b>displaced</b>, one of two is, two are <b>swapped</b>. The best is told only where
+sets without a mistake hardly ever show as much; then the others are judged without it. What about
+one such set in four shows is <b>worth a look</b> and never counts as wrong.</p>
+<p>With fewer than a dozen pairs an empty list is no proof: they can hardly contradict one another.
+A bone that is truly strange in one place looks like a displaced landmark. Fewer than seven pairs,
+or more than three wrong ones in ten, cannot be judged.</p>
 """
 
 ABOUT_REFINING = """

@@ -14,8 +14,10 @@ from pinwarp.core.components import Components, applied, as_drawn
 from pinwarp.core.errors import RangeError
 from pinwarp.core.factor import SourceFactor
 from pinwarp.core.findings import Finding, FindingKind, Severity, gravest_first
+from pinwarp.core.isolation import isolated
 from pinwarp.core.landmarks import Position
 from pinwarp.core.lengths import rms
+from pinwarp.core.mirror import MIRRORED, reflection_misfit
 from pinwarp.core.quality import (
     LeaveOneOut,
     PenaltyCurve,
@@ -24,7 +26,7 @@ from pinwarp.core.quality import (
     penalty_curve,
 )
 from pinwarp.core.spline import Spline, solve
-from pinwarp.core.suspects import is_mirrored, suspects, swapped_pairs
+from pinwarp.core.suspects import suspects
 from pinwarp.session.session import Session
 from pinwarp.session.warp.pair_names import pair_names
 from pinwarp.session.warp.result import WarpInputs, WarpResult
@@ -74,10 +76,11 @@ class Quality:
     curve
         Leave-one-out error, residual and flexibility over the penalty of the regularising
         convention.
-    findings
-        About the pairs, the gravest first: a mirrored set, swapped pairs, inconsistent
-        neighbours, suspects and conflicts, then what else the solve noticed, then isolated
-        landmarks.
+    judgement
+        What the pairs say about one another: a mirrored set, or swapped and displaced pairs, what
+        is worth a look and what is only isolated. None while something moves: it takes longer.
+    noticed
+        What the solve noticed besides.
     affine
         The best affine fit of the pairs, taken apart about the middle of the source landmarks.
     energy : (3,) float64
@@ -92,11 +95,23 @@ class Quality:
     inputs: WarpInputs
     left_out: LeaveOneOut | None
     curve: PenaltyCurve | None
-    findings: tuple[Finding, ...]
+    judgement: tuple[Finding, ...] | None
+    noticed: tuple[Finding, ...]
     affine: AffineParts
     energy: Matrix
     rms_by_components: Mapping[Components, float]
     rank: int
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """All that is known so far, the gravest first."""
+        return gravest_first((*(self.judgement or ()), *self.noticed))
+
+    def judged_as(self, before: Quality | None) -> Quality:
+        """Return these figures with an earlier judgement, until there is one of these pairs."""
+        if before is None or len(before.inputs.source) != len(self.inputs.source):
+            return self
+        return replace(self, judgement=before.judgement)
 
     def findings_in(self, session: Session) -> tuple[NamedFinding, ...]:
         """Return the findings by name, as far as their pairs are still there.
@@ -153,13 +168,15 @@ def named_findings(
     return tuple(named)
 
 
-def quality_of(result: WarpResult) -> Quality | None:
+def quality_of(result: WarpResult, *, judge: bool = True) -> Quality | None:
     """Judge the pairs of a warp.
 
     Parameters
     ----------
     result
         A solved warp.
+    judge
+        False for the figures alone, while something moves.
 
     Returns
     -------
@@ -167,13 +184,13 @@ def quality_of(result: WarpResult) -> Quality | None:
         None where there is no warp, or one beyond all figures.
     """
     try:
-        return _judged(result)
+        return _judged(result, judge)
     except RangeError:
         # A part of the warp leaves the range of numbers: there is nothing to say in figures.
         return None
 
 
-def _judged(result: WarpResult) -> Quality | None:
+def _judged(result: WarpResult, judge: bool) -> Quality | None:
     factor, spline, inputs = result.factor, result.spline, result.inputs
     if factor is None or spline is None:
         return None
@@ -192,14 +209,16 @@ def _judged(result: WarpResult) -> Quality | None:
     fit = spline
     if not math.isinf(inputs.settings.penalty):
         fit = solve(*result.fit, np.inf)
-    # Of the pairs alone: a semilandmark is never wrong, since nobody placed it.
-    pairs_fit = fit if at_rest is None else solve(factor, destination, np.inf)
-    found = _about_pairs(factor, inputs.source, destination, pairs_fit) if enough else ()
+    judgement: tuple[Finding, ...] | None = () if judge else None
+    if judge and enough:
+        # Of the pairs alone: a semilandmark is never wrong, since nobody placed it.
+        judgement = _about_pairs(factor, inputs.source, destination)
     return Quality(
         inputs=inputs,
         left_out=left_out,
         curve=curve,
-        findings=gravest_first((*found, *spline.findings)),
+        judgement=judgement,
+        noticed=spline.findings,
         affine=decompose(fit.affine, factor.centre),
         energy=bending_energy(spline),
         rms_by_components=_rms_by_components(result, spline, fit),
@@ -260,17 +279,14 @@ def penalty_advice(curve: PenaltyCurve) -> str:
 
 
 def _about_pairs(
-    factor: SourceFactor, source: tuple[Position, ...], destination: Matrix, fit: Spline
+    factor: SourceFactor, source: tuple[Position, ...], destination: Matrix
 ) -> tuple[Finding, ...]:
     """Find what is wrong, at penalty 0: a penalty would spread one pair's error over others."""
-    if is_mirrored(source, destination):
+    left = reflection_misfit(source, destination)
+    if left < MIRRORED:
         # Nothing else can be said before that is put right.
-        return (Finding(FindingKind.MIRRORED, (), 0.0),)
-    swapped = swapped_pairs(factor, destination)
-    explained = {row for finding in swapped for row in finding.rows}
-    # With them put right, so that nobody is blamed for his neighbour's exchange.
-    mended = destination.copy()
-    for finding in swapped:
-        mended[list(finding.rows)] = destination[list(finding.rows[::-1])]
-    others = suspects(factor, mended, fit=None if swapped else fit)
-    return (*swapped, *(x for x in others if not explained.intersection(x.rows)))
+        return (Finding(FindingKind.MIRRORED, (), left),)
+    found = suspects(factor, destination)
+    named = {row for finding in found for row in finding.rows}
+    alone = isolated(factor, leave_one_out(factor, destination))
+    return (*found, *(x for x in alone if not named.intersection(x.rows)))

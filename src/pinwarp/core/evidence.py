@@ -1,0 +1,186 @@
+"""What the pairs say about one another at every noise level, some of them left out.
+
+With ``G`` as in :mod:`pinwarp.core.quality`, ``U = G y``, ``g = diag G`` and ``Q = tr y' G y``,
+leaving out pairs D takes ``G_.D G_DD^-1 G_D.`` from G, so that nothing is factorised again. The
+log likelihoods are those of a Gaussian field whose variance is profiled out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pinwarp.core.pair_field import PairField
+
+Matrix = NDArray[np.float64]
+
+# A pair that the others leave so little of is determined by itself: it cannot be judged.
+UNJUDGED = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """The pairs that are kept, seen as one field; made by :func:`evidence`.
+
+    Attributes
+    ----------
+    field
+        What depends on the source alone.
+    destination : (n, 3) float64
+        About their middle, and of unit length in all.
+    left_out
+        The rows that are left out.
+    pulls : (n, 3, k)
+        ``G y`` at every noise level.
+    precision : (n, k)
+        ``diag G``.
+    misfit : (k,)
+        ``tr y' G y``.
+    log_det : (k,)
+        Minus the logarithm of the determinant of the variance.
+    freedom
+        How many modes are left.
+    kept : (n,) bool
+        The pairs that can be judged.
+    """
+
+    field: PairField
+    destination: Matrix
+    left_out: tuple[int, ...]
+    pulls: Matrix
+    precision: Matrix
+    misfit: Matrix
+    log_det: Matrix
+    freedom: int
+    kept: NDArray[np.bool_]
+
+    @cached_property
+    def _safe(self) -> Matrix:
+        return np.where(self.kept[:, None], self.precision, 1.0)
+
+    @cached_property
+    def gains(self) -> Matrix:
+        """(n, k): by how much leaving out one more pair lowers the misfit."""
+        squares = np.einsum("nck,nck->nk", self.pulls, self.pulls)
+        return np.where(self.kept[:, None], squares / self._safe, 0.0)
+
+    @cached_property
+    def remaining(self) -> Matrix:
+        """(n, k): the misfit without one more pair."""
+        return np.maximum(self.misfit - self.gains, UNJUDGED * self.misfit)
+
+    @cached_property
+    def nothing_wrong(self) -> Matrix:
+        """(k,): the log likelihood that no pair is wrong."""
+        return self.likelihood(self.misfit, self.log_det)
+
+    @cached_property
+    def one_wrong(self) -> Matrix:
+        """(n, k): the log likelihood that this pair is wrong, wherever it should be."""
+        return self.likelihood(self.remaining, self.log_det)
+
+    @cached_property
+    def level(self) -> int:
+        """The most likely noise level where nothing is wrong."""
+        return int(self.nothing_wrong.argmax())
+
+    def level_without(self, row: int) -> int:
+        """Return the most likely noise level of the others alone."""
+        freed = self.log_det - np.log(self._safe[row])
+        fewer = -1.5 * (self.freedom - 1) * np.log(self.remaining[row]) + 1.5 * freed
+        return int(fewer.argmax())
+
+    def likelihood(self, misfit: Matrix | float, log_det: Matrix | float) -> Matrix:
+        """Return the log likelihood of pairs that fit so well."""
+        return np.asarray(-1.5 * self.freedom * np.log(misfit) + 1.5 * log_det)
+
+    def column(self, level: int, row: int) -> Matrix:
+        """Return a column of ``G`` at a noise level, (n,)."""
+        column = self.field.entries(level, [row])[:, 0]
+        if self.left_out:
+            taken, inverse = self._taken(level)
+            column = column - taken @ (inverse @ taken[row])
+        return column
+
+    def block(self, level: int, rows: list[int]) -> Matrix:
+        """Return ``G`` between some pairs at a noise level."""
+        block = self.field.entries(level, rows, rows)
+        if self.left_out:
+            taken, inverse = self._taken(level, rows)
+            block = block - taken @ inverse @ taken.T
+        return block
+
+    def near_entries(self, level: int) -> Matrix:
+        """Return ``G`` between each pair and its neighbours at a noise level."""
+        entries = self.field.near_entries(level)
+        if self.left_out:
+            taken, inverse = self._taken(level)
+            entries = entries - np.einsum("nd,nkd->nk", taken @ inverse, taken[self.field.near])
+        return entries
+
+    def _taken(self, level: int, of: list[int] | None = None) -> tuple[Matrix, Matrix]:
+        """Return the columns of those left out as they were, and their block's inverse."""
+        out = self.left_out
+        block = self.field.entries(level, out, out)
+        inverse = np.asarray(np.linalg.pinv(block, hermitian=True), dtype=np.float64)
+        return self.field.entries(level, out, of), inverse
+
+
+def evidence(field: PairField, destination: Matrix, left_out: Sequence[int] = ()) -> Evidence:
+    """Return what the pairs say about one another, some left out.
+
+    Parameters
+    ----------
+    field
+        The source landmarks as a field.
+    destination
+        (n, 3) destinations, about their middle and scaled to about unit length in all.
+    left_out
+        Rows that take no part.
+
+    Examples
+    --------
+    >>> from pinwarp.core.factor import factorise
+    >>> source = np.random.default_rng(0).normal(size=(12, 3))
+    >>> strange = 0.1 * np.sin(source)
+    >>> strange[4] += 1
+    >>> seen = evidence(PairField.of(factorise(source)), strange)
+    >>> int(seen.one_wrong[:, seen.level].argmax())
+    4
+    """
+    modes, certainty, rows = field.modes, field.certainty, list(left_out)
+    parts = modes.T @ destination
+    count, levels = len(modes), len(field.noise)
+    spread = parts[:, :, None] * certainty[:, None, :]
+    pulls = (modes @ spread.reshape(len(parts), 3 * levels)).reshape(count, 3, levels)
+    precision, log_det = field.precision, field.log_det
+    misfit = np.sum(parts * parts, axis=1) @ certainty
+    if rows:
+        # (k, n, d), (k, d, d), (k, d, 3)
+        taken = modes @ (certainty.T[:, :, None] * modes[rows].T)
+        block = taken[:, rows]
+        inverse = np.linalg.pinv(block, hermitian=True)
+        onto = taken @ inverse
+        theirs = pulls[rows].transpose(2, 0, 1)
+        misfit = misfit - np.sum(theirs * (inverse @ theirs), axis=(1, 2))
+        log_det = log_det - np.linalg.slogdet(block)[1]
+        pulls = pulls - (onto @ theirs).transpose(1, 2, 0)
+        precision = precision - np.sum(onto * taken, axis=2).T
+    kept = np.ones(count, dtype=np.bool_)
+    kept[rows] = False
+    kept &= precision[:, 0] > UNJUDGED * float(np.median(precision[:, 0]))
+    return Evidence(
+        field=field,
+        destination=destination,
+        left_out=tuple(rows),
+        pulls=pulls,
+        precision=precision,
+        misfit=np.maximum(misfit, 1e-24),
+        log_det=log_det,
+        freedom=modes.shape[1] - len(rows),
+        kept=kept,
+    )

@@ -1,0 +1,97 @@
+"""What pairs say about one of them: asked again and again, worked out once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pinwarp.core.chance import Chance, chance_of
+from pinwarp.core.evidence import Evidence, evidence
+from pinwarp.core.factor import SourceFactor, factorise
+from pinwarp.core.pair_field import PairField, Roughness
+
+Matrix = NDArray[np.float64]
+
+# With fewer modes left nothing can be judged: seven pairs in space.
+LEAST_FREEDOM = 3
+# A smooth field is fitted to so many pairs around the one in question.
+AROUND = 120
+
+
+class Witnesses:
+    """The pairs, to be asked about one another while some are left out and others exchanged.
+
+    Parameters
+    ----------
+    factor
+        The source landmarks; three usable modes or more.
+    destination
+        (n, 3) destinations about their middle, of about unit length in all.
+    """
+
+    def __init__(self, factor: SourceFactor, destination: Matrix) -> None:
+        self._factor = factor
+        self._field = PairField.of(factor)
+        self._destination = destination.copy()
+        self._seen: dict[tuple[int, ...], Evidence] = {}
+        self._smooth: dict[tuple[int, ...], Evidence | None] = {}
+        self._chances: dict[tuple[tuple[int, ...], int], Chance] = {}
+
+    @property
+    def freedom(self) -> int:
+        """How many modes all pairs have."""
+        return len(self._field.certainty)
+
+    def without(self, rows: Iterable[int]) -> Evidence:
+        """Return what the others say without some."""
+        out = tuple(sorted(rows))
+        if out not in self._seen:
+            self._seen[out] = evidence(self._field, self._destination, out)
+        return self._seen[out]
+
+    def exchange(self, i: int, j: int) -> None:
+        """Exchange two destinations: from now on that is what the pairs are."""
+        self._destination[[i, j]] = self._destination[[j, i]]
+        for known in (self._seen, self._smooth, self._chances):
+            known.clear()
+
+    def chance(self, seen: Evidence, row: int) -> Chance:
+        """Return the chance of a pair in the spline's own field."""
+        key = (seen.left_out, row)
+        if key not in self._chances:
+            self._chances[key] = chance_of(seen, row)
+        return self._chances[key]
+
+    def agreed(self, seen: Evidence, row: int, limit: float) -> Chance:
+        """Return the chance of a pair; below a limit, that in a smooth field if it is larger."""
+        chance = self.chance(seen, row)
+        if chance.value >= limit:
+            return chance
+        smooth, place = self._smoothly(seen.left_out, row)
+        if smooth is None or not smooth.kept[place]:
+            return chance
+        return replace(chance, value=max(chance.value, chance_of(smooth, place).value))
+
+    def _smoothly(self, left_out: tuple[int, ...], row: int) -> tuple[Evidence | None, int]:
+        """Return a smooth field of the pairs around one, if it can be judged, and its place."""
+        source = self._factor.source
+        apart = np.linalg.norm(source - source[row], axis=1)
+        apart[list(left_out)] = np.inf
+        # Of duplicates at its place none comes before it.
+        apart[row] = -1
+        rows = np.sort(np.argsort(apart, kind="stable")[: min(AROUND, len(apart) - len(left_out))])
+        key = tuple(rows.tolist())
+        if key not in self._smooth:
+            self._smooth[key] = self._fitted(rows)
+        return self._smooth[key], int(np.searchsorted(rows, row))
+
+    def _fitted(self, rows: NDArray[np.intp]) -> Evidence | None:
+        whole = len(rows) == len(self._destination)
+        factor = self._factor if whole else factorise(self._factor.source[rows])
+        if int(factor.place_of.max()) - factor.rank < LEAST_FREEDOM:
+            return None
+        near = self._destination[rows]
+        return evidence(PairField.of(factor, Roughness.SMOOTH), near - near.mean(axis=0))
