@@ -29,6 +29,7 @@ KEYS = {
     "rms_leave_one_out": float,
     "flexibility": float,
     "suggested_penalty": (float, type(None)),
+    "as_good": (list, type(None)),
     "folded_vertices": int,
     "distance": dict,
     "fitted": (int, type(None)),

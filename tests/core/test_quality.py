@@ -169,6 +169,32 @@ def test_noise_asks_for_a_penalty_and_smoothness_for_none():
     assert errors[1] < errors[0]
 
 
+def noisy_pairs(count):
+    rng = np.random.default_rng(2)
+    source = rng.uniform(-1, 1, (count, 3))
+    bent = source + 0.3 * np.sin(3 * source[:, [1, 2, 0]])
+    return source, bent + 0.15 * rng.normal(size=source.shape)
+
+
+@pytest.mark.parametrize("count", [80, 300])
+def test_penalties_that_chance_cannot_tell_from_the_suggested_one_lie_around_it(count):
+    source, noisy = noisy_pairs(count)
+    factor = factorise(source)
+    curve = penalty_curve(factor, noisy)
+    low, high = curve.as_good
+    assert low < curve.suggested < high
+    best = np.sum(leave_one_out(factor, noisy, curve.suggested).errors ** 2, axis=1)
+    for penalty in curve.penalties:
+        more = np.sum(leave_one_out(factor, noisy, penalty).errors ** 2, axis=1) - best
+        by_chance = more.mean() <= more.std(ddof=1) / np.sqrt(count)
+        assert by_chance == (low <= penalty <= high)
+
+
+def test_more_pairs_tell_penalties_apart_better():
+    few, many = (penalty_curve(factorise(a), b).as_good for a, b in map(noisy_pairs, (80, 300)))
+    assert many[1] / many[0] < few[1] / max(few[0], 1e-9)
+
+
 def test_bending_energy_is_the_quadratic_form_of_the_data():
     rng = np.random.default_rng(3)
     source, destination = rng.normal(size=(10, 3)), rng.normal(size=(10, 3))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from pinwarp.core.landmarks import Landmark, as_position
 from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import PenaltyConvention, solve
 from pinwarp.session import edits
-from pinwarp.session.judging.quality import quality_of
+from pinwarp.session.judging.quality import penalty_advice, quality_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.result import WarpInputs
 from pinwarp.session.warp.solver import WarpSolver
@@ -109,6 +110,23 @@ def test_close_landmarks_are_mentioned_with_the_others():
     source[1] = source[0] + 1e-4
     kinds = [finding.kind for finding in quality(session_of(source, destination)).findings]
     assert FindingKind.CLOSE in kinds
+
+
+@pytest.mark.parametrize(
+    ("as_good", "words"),
+    [
+        ((3.14159, 41.0), "Anything from 3.1 mm to 41 mm does as well as the suggested penalty."),
+        ((0.0, 41.0), "Anything up to 41 mm does as well, even no penalty."),
+        ((3.0, np.inf), "Anything from 3 mm on does as well, even the affine fit."),
+        ((0.0, np.inf), "The pairs do not tell one penalty from another: anything does as well."),
+    ],
+)
+def test_a_suggested_penalty_says_how_flat_its_curve_is(as_good, words):
+    source, destination = made_up(30)
+    noisy = destination + 4 * np.random.default_rng(1).normal(size=destination.shape)
+    curve = quality(session_of(source, noisy)).curve
+    assert curve.suggested is not None
+    assert penalty_advice(replace(curve, as_good=as_good), "mm") == words
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4])

@@ -109,6 +109,7 @@ def _figures(session: Session, checked: checking.Check) -> list[tuple[str, str]]
     figures = [
         *settings_in_words(session.settings, unit),
         ("Suggested penalty", _length(checked.suggested_penalty, unit, "none")),
+        *_flatness(checked, unit),
         (
             "Flexibility",
             "not defined" if checked.flexibility is None else f"{checked.flexibility:.1%}",
@@ -132,6 +133,14 @@ def _figures(session: Session, checked: checking.Check) -> list[tuple[str, str]]
         told = SLID if checked.groups else FITTED
         figures.append(("Fitted to the surface", told.format(checked.fitted)))
     return figures
+
+
+def _flatness(checked: checking.Check, unit: str) -> list[tuple[str, str]]:
+    """Say which penalties do as well as the suggested one."""
+    if checked.as_good is None:
+        return []
+    low, high = checked.as_good
+    return [("As good", f"{low:.2g} to {high:.2g} {unit}")]
 
 
 def _number(value: float, decimals: int) -> str:

@@ -158,6 +158,10 @@ class PenaltyCurve:
     suggested : float or None
         The penalty with the least leave-one-out error; None where that is at an end of the
         curve, so that the data ask for no penalty or for all of it.
+    as_good : (float, float) or None
+        Between which penalties around the suggested one the error is no larger than by chance:
+        the pairs' squared errors exceed those at the suggested one by no more, on average, than
+        the standard error of that difference. None where none is suggested.
     is_affine : bool
         Whether an affine map meets every pair: the penalty then changes nothing.
     """
@@ -167,6 +171,7 @@ class PenaltyCurve:
     residual: Matrix
     flexibility: Matrix
     suggested: float | None
+    as_good: tuple[float, float] | None
     is_affine: bool
 
     def at(self, flexibility: float) -> tuple[float, float]:
@@ -241,19 +246,22 @@ def penalty_curve(
     squares = np.einsum("nck,nck->nk", pulls, pulls)
     judged = np.isfinite(diagonal[:, 0])
     errors = np.full(len(grid), np.nan)
+    left_out = squares[judged] / diagonal[judged] ** 2
     if judged.any():
-        errors = np.sqrt(np.mean(squares[judged] / diagonal[judged] ** 2, axis=0))
+        errors = np.sqrt(np.mean(left_out, axis=0))
     rounding = ROUNDING * float(np.abs(np.asarray(destination)).max())
     is_affine = bool(judged.any() and errors.max() <= rounding)
     if is_affine:
         # What is left is rounding, and no figure.
         errors, residual = np.zeros_like(errors), np.zeros_like(residual)
+    suggested = None if is_affine else _suggested(grid, errors)
     return PenaltyCurve(
         penalties=grid,
         leave_one_out=errors,
         residual=residual,
         flexibility=np.array([factor.flexibility(penalty) for penalty in grid.tolist()]),
-        suggested=None if is_affine else _suggested(grid, errors),
+        suggested=suggested,
+        as_good=None if suggested is None else _as_good(grid, left_out),
         is_affine=is_affine,
     )
 
@@ -264,6 +272,18 @@ def _suggested(penalties: Matrix, errors: Matrix) -> float | None:
     best = int(errors.argmin())
     worthwhile = errors[best] < (1 - WORTH_SUGGESTING) * min(errors[0], errors[-1])
     return float(penalties[best]) if worthwhile else None
+
+
+def _as_good(penalties: Matrix, squares: Matrix) -> tuple[float, float]:
+    """Return the range around the least mean of (n, k) squares that chance cannot tell from it."""
+    best = int(np.mean(squares, axis=0).argmin())
+    more = squares - squares[:, [best]]
+    # The same pairs at both penalties: what they have in common does not count as chance.
+    chance = np.std(more, axis=0, ddof=1) / np.sqrt(len(squares))
+    worse = np.flatnonzero(np.mean(more, axis=0) > chance)
+    low = worse[worse < best].max(initial=-1) + 1
+    high = worse[worse > best].min(initial=len(penalties)) - 1
+    return float(penalties[low]), float(penalties[high])
 
 
 @quiet

@@ -248,7 +248,7 @@ class PenaltyPanel(QWidget):
 
     def _show_words(self) -> None:
         curve = self._curve
-        advice = penalty_advice(curve) if curve is not None else ""
+        advice = penalty_advice(curve, self._session.unit) if curve is not None else ""
         if curve is not None and self._session.settings.convention is PenaltyConvention.OPYNSIM:
             advice = ""
         has_modes = self._factor is not None and len(self._factor.poles) > 0
@@ -261,11 +261,12 @@ class PenaltyPanel(QWidget):
         there = penalty is not None and penalty == self._session.settings.penalty
         self.suggested.setEnabled(penalty is not None and not there)
         words = "No penalty suggested"
-        tip = penalty_advice(curve) if curve is not None else self._without_suggestion
+        unit = self._session.unit
+        tip = penalty_advice(curve, unit) if curve is not None else self._without_suggestion
         if penalty is not None:
             length = format_length(penalty, self._session.unit, 3)
             words = f"At suggested: {length}" if there else f"Use suggested: {length}"
-            tip = "The penalty with the least leave-one-out error (T)"
+            tip = f"The penalty with the least leave-one-out error (T). {tip}"
         elif self._waits_for:
             words, tip = _WAITS, f"No penalty is suggested while {self._waits_for}: see the list."
         elif curve is not None and curve.suggested is not None:

@@ -89,6 +89,8 @@ class Check:
         The share of non-affine freedom that the penalty leaves.
     suggested_penalty
         The penalty with the least leave-one-out error; None too where the data ask for none.
+    as_good
+        Between which penalties around it the error is no larger than by chance.
     folded_vertices
         How many vertices of the source mesh lie where the warp folds.
     distance
@@ -120,6 +122,7 @@ class Check:
     rms_leave_one_out: float | None
     flexibility: float | None
     suggested_penalty: float | None
+    as_good: tuple[float, float] | None
     folded_vertices: int | None
     distance: DistanceFigures | None
     fitted: int | None
@@ -152,6 +155,10 @@ class Check:
             "rms_leave_one_out": self.rms_leave_one_out,
             "flexibility": self.flexibility,
             "suggested_penalty": self.suggested_penalty,
+            # The affine fit's penalty is no number to JSON.
+            "as_good": None
+            if self.as_good is None
+            else ["inf" if math.isinf(end) else end for end in self.as_good],
             "folded_vertices": self.folded_vertices,
             "distance": None if self.distance is None else asdict(self.distance),
             "fitted": self.fitted,
@@ -225,6 +232,7 @@ def check(session: Session | SolvedWarp, source_index: SurfaceIndex | None = Non
         rms_leave_one_out=_known(None if left_out is None else left_out.rms),
         flexibility=_known(result.flexibility),
         suggested_penalty=None if quality.curve is None else quality.curve.suggested,
+        as_good=None if quality.curve is None else quality.curve.as_good,
         folded_vertices=None if folds is None else folds.count,
         distance=None
         if distances is None

@@ -248,18 +248,20 @@ def _rms_by_components(result: WarpResult, spline: Spline, fit: Spline) -> dict[
     return {part: left[as_drawn(part)] for part in Components}
 
 
-def penalty_advice(curve: PenaltyCurve) -> str:
-    """Say why a curve suggests no penalty, in words for the user.
+def penalty_advice(curve: PenaltyCurve, unit: str = "") -> str:
+    """Say how much a suggested penalty matters, or why a curve suggests none.
 
     Parameters
     ----------
     curve
         The figures over the penalty.
+    unit
+        Of the penalties.
 
     Returns
     -------
     str
-        Empty where a penalty is suggested, or where no pair can be left out.
+        Empty where no pair can be left out.
 
     Examples
     --------
@@ -271,11 +273,25 @@ def penalty_advice(curve: PenaltyCurve) -> str:
     if curve.is_affine:
         return "An affine map meets every pair: the penalty changes nothing."
     first, last = curve.leave_one_out[[0, -1]].tolist()
-    if curve.suggested is not None or not (np.isfinite(first) and np.isfinite(last)):
+    if curve.as_good is not None:
+        return _as_good_in_words(*curve.as_good, unit)
+    if not (np.isfinite(first) and np.isfinite(last)):
         return ""
     if first <= last:
         return "The least leave-one-out error is at no penalty: the pairs ask for none."
     return "The least leave-one-out error is at the affine fit: the pairs ask for no bending."
+
+
+def _as_good_in_words(low: float, high: float, unit: str) -> str:
+    start, end = (f"{figure:.2g} {unit}".rstrip() for figure in (low, high))
+    match low > 0, math.isfinite(high):
+        case True, True:
+            return f"Anything from {start} to {end} does as well as the suggested penalty."
+        case True, False:
+            return f"Anything from {start} on does as well, even the affine fit."
+        case False, True:
+            return f"Anything up to {end} does as well, even no penalty."
+    return "The pairs do not tell one penalty from another: anything does as well."
 
 
 def _about_pairs(
