@@ -5,6 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.distance import cdist
+from tests.core.femur import femur_landmarks
+from tests.core.mistaken import made_up
 from tests.core.strategies import landmark_pairs
 
 from pinwarp.core.errors import LandmarkError, PenaltyError
@@ -196,3 +198,33 @@ def test_one_pair_and_no_pair_are_inverted_too():
     assert np.allclose(places, [[4, 5, 5]])
     assert np.allclose(inverse_warp(identity(), [[5, 6, 7]])[0], [[5, 6, 7]])
     assert inverse_warp(identity(), np.zeros((0, 3)))[0].shape == (0, 3)
+
+
+# What it promises
+
+
+def covered(cases):
+    """The shares of true places within 1, 2 and 3 deviations, of (source, destination, known)."""
+    shares = []
+    for source, destination, known in cases:
+        factor, left_out = factorise(source[known]), np.delete(np.arange(len(source)), known)
+        expected = solve(factor, destination[known]).evaluate(source[left_out])
+        prediction = prediction_of(factor, destination[known], 0.0)
+        missed = np.linalg.norm(expected - destination[left_out], axis=1)
+        shares.extend(missed / prediction.standard_deviation(source[left_out]))
+    return [float(np.mean(np.array(shares) < times)) for times in (1, 2, 3)]
+
+
+@pytest.mark.parametrize("count", [10, 25])
+def test_fields_of_the_splines_own_kind_keep_to_what_is_promised(count):
+    sets = (made_up(count + 30, seed) for seed in range(150))
+    cases = ((x.factor.source, x.destination, np.arange(count)) for x in sets)
+    # A normal distribution has 20, 74 and 97 % in space; the deviation itself is estimated.
+    assert covered(cases) == pytest.approx([0.19, 0.69, 0.95], abs=0.03)
+
+
+def test_a_real_femur_has_as_many_places_within_two_deviations_but_heavier_tails(shared_data):
+    _, source, destination = femur_landmarks(shared_data)
+    rng = np.random.default_rng(0)
+    cases = ((source, destination, rng.permutation(20)[:14]) for _ in range(200))
+    assert covered(cases) == pytest.approx([0.38, 0.75, 0.88], abs=0.03)

@@ -49,6 +49,10 @@ class Prediction:
     def standard_deviation(self, points: ArrayLike) -> Matrix:
         """Return the standard deviation of one coordinate of the warp.
 
+        Were the errors normal, 20, 74 and 97 % of the true places would lie within 1, 2 and 3 of
+        it. In fields that the spline is right about it is 19, 69 and 95 %, of landmarks left out of
+        a real femur, six of 20 at a time, 38, 75 and 88 %: their errors have heavier tails.
+
         Parameters
         ----------
         points

@@ -41,6 +41,11 @@ one such set in four shows is <b>worth a look</b> and never counts as wrong.</p>
 <p>With fewer than a dozen pairs an empty list is no proof: they can hardly contradict one another.
 A bone that is truly strange in one place looks like a displaced landmark. Fewer than seven pairs,
 or more than three wrong ones in ten, cannot be judged.</p>
+<p>The disc where a landmark is expected and the map of the <b>uncertainty</b> show the standard
+deviation of one coordinate. Within 1, 2 and 3 of it lay 38, 75 and 88 % of the landmarks that were
+left out of a real femur, six of 20 at a time, and 19, 69 and 95 % in fields made up as the spline
+supposes them (a normal distribution would have 20, 74 and 97 %).
+Beyond 3 there are more on a bone, which is not everywhere the same.</p>
 """
 
 ABOUT_REFINING = """
