@@ -41,6 +41,7 @@ NAMES = [
     "read_session",
     "refined_session",
     "solve_coefficients",
+    "suspects",
     "warp_model",
     "warped_mesh",
     "warped_passengers",

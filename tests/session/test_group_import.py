@@ -14,6 +14,7 @@ from pinwarp.io.landmark_files import LandmarkReading, read_landmarks
 from pinwarp.io.landmark_formats.reading import ReadGroup
 from pinwarp.io.semilandmark_files import semilandmark_files, write_all
 from pinwarp.session import edits
+from pinwarp.session.importing.asking import is_plain
 from pinwarp.session.importing.fit import Fit, fitted
 from pinwarp.session.importing.landmarks import (
     Arriving,
@@ -21,7 +22,6 @@ from pinwarp.session.importing.landmarks import (
     Pairing,
     group_words,
     imported,
-    is_plain,
 )
 from pinwarp.session.outputs.semilandmarks import semilandmarks_on
 from pinwarp.session.session import Session

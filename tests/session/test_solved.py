@@ -95,7 +95,8 @@ def test_one_subject_of_a_batch_is_factorised_solved_and_warped_once(study, tmp_
         "solves": 2,
         "warps of the mesh": 1,
         "derivatives of the mesh": 1,
-        "indexes": 1,
+        # Of the destination, and of the source once for all subjects of a process.
+        "indexes": 2,
         "judgements": 1,
     }
 
@@ -197,6 +198,7 @@ def test_every_kind_of_finding_has_one_severity():
         FindingKind.SWAPPED,
         FindingKind.DISPLACED,
         FindingKind.EITHER,
+        FindingKind.ELSEWHERE,
         FindingKind.CONFLICT,
         FindingKind.FOLD,
     }
