@@ -12,10 +12,13 @@ from qtpy.QtWidgets import QLabel
 from tests.core.bones import bone, truth
 from tests.gui.conftest import Driver, close_window, open_window
 from tests.gui.guesses import bare_place, bones, following, ghosts, opened, part, status
+from tests.gui.living import alive
 
 from pinwarp.core.errors import MeshError
 from pinwarp.core.first_guess import Verdict
 from pinwarp.core.landmarks import Landmark, Side
+from pinwarp.core.mesh import Mesh
+from pinwarp.gui.drawn.surface import Surface as DrawnSurface
 from pinwarp.gui.suggesting import words
 from pinwarp.io.meshes import write_mesh
 from pinwarp.io.samples import sample_session
@@ -296,13 +299,21 @@ def test_an_error_is_kept_for_the_report_and_nothing_is_lost(user, guesser):
     assert len(ghosts(user)) == 10
 
 
-def test_another_session_takes_the_ghosts_away(user):
-    open_destination(user)
-    user.press(G, CONTROL)
+def test_another_session_takes_the_ghosts_away_and_holds_no_mesh_of_those_before(user, guesser):
     (user.folder / "two").mkdir()
-    opened(user, bones(user.folder / "two", count=6))
-    assert not ghosts(user)
-    assert bar(user).suggest.isVisible()
+    path, held = bones(user.folder / "two", count=6), []
+    for _ in range(3):
+        opened(user, path)
+        assert not ghosts(user)
+        assert bar(user).suggest.isVisible()
+        user.press(G, CONTROL)
+        # Once seen, once turned to.
+        for _ in range(3):
+            user.press(Qt.Key.Key_Space)
+        assert ghosts(user)
+        guesser.asked.clear()
+        held.append(alive([Mesh, DrawnSurface]))
+    assert held[2] == held[1]
 
 
 @pytest.mark.parametrize("when", ["running", "asked", "shown"])

@@ -57,8 +57,9 @@ class Expected:
             self.taken = replace(self.taken, reading=reading)
 
     def forget(self) -> None:
-        """Expect nothing any more."""
+        """Expect nothing any more, and hold no mesh."""
         self.taken = None
+        self._known, self._known_for = (), (None, None)
 
     def ghosts(self) -> tuple[Ghost, ...]:
         """Return a ghost for each missing landmark within reach, the most certain first."""
