@@ -12,7 +12,7 @@ from pinwarp.core.positions import as_positions, quiet
 AXES = "xyz"
 # What a reflection must leave of the misfit of the best rotation, by the length that this share
 # of the pairs is below: the others may be wrong.
-MIRRORED, MOST = 0.7, 0.6
+MIRRORED, MOST = 0.75, 0.7
 # With fewer pairs there is no telling.
 LEAST_PAIRS = 5
 # Steps to the least sum of lengths; shorter ones than this share of the median weigh the same.
