@@ -18,7 +18,7 @@ Matrix = NDArray[np.float64]
 # With fewer modes left nothing can be judged: seven pairs in space.
 LEAST_FREEDOM = 3
 # A smooth field is fitted to so many pairs around the one in question.
-AROUND = 120
+AROUND = 80
 
 
 class Witnesses:
