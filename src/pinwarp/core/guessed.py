@@ -193,7 +193,8 @@ def guessed(
     return Guesses(
         positions=places.positions,
         radii=np.full(len(asked), radius),
-        beyond_rim=places.on_rim | (off > BEYOND * radius),
+        # By the doubt of the shapes: accepting what is shown makes no part of the bone end.
+        beyond_rim=places.on_rim | (off > BEYOND * reading.radius),
         # Of the doubt of one among others only this much is known: how near it is to an accepted
         # one, and whether the warp had reached the surface.
         order=np.argsort(radius**2 * (1 - np.sum(shares**2, axis=0)) + off**2, kind="stable"),
