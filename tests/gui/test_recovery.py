@@ -118,7 +118,7 @@ def test_work_done_while_lost_work_is_read_stays_when_the_user_says_so(user, cra
         driver.open_sample()
         at = driver.free_place(SOURCE)
         monkeypatch.setattr(
-            session_meshes, "read_mesh", lambda *a, **k: gate.wait(30) and read_mesh(*a, **k)
+            session_meshes, "read_any_mesh", lambda *a, **k: gate.wait(30) and read_mesh(*a, **k)
         )
         driver.dialogs.lost, driver.dialogs.unsaved = [LostAnswer.RESTORE], Answer.CANCEL
         driver.window.actions_by_key["restore"].trigger()

@@ -302,7 +302,7 @@ def slow_reading(monkeypatch):
         gate.wait(30)
         return read_mesh(*args, **kwargs)
 
-    yield lambda: monkeypatch.setattr(session_meshes, "read_mesh", read_later) or gate
+    yield lambda: monkeypatch.setattr(session_meshes, "read_any_mesh", read_later) or gate
     gate.set()
 
 

@@ -3,16 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Unpack
 
 from pinwarp.core.errors import PinwarpError
+from pinwarp.core.frame_warp import BodyRules
 from pinwarp.core.landmarks import Side
-from pinwarp.session.history import History
+from pinwarp.session.history import NO_RULES, History
 from pinwarp.session.session import Session
 from pinwarp.session.signals import isolated
 from pinwarp.session.view import Selection, ViewChanges, ViewState
+
+
+@dataclass(frozen=True, eq=False)
+class Work:
+    """What was worked on, as it can be set aside and taken up again.
+
+    Parameters
+    ----------
+    history
+        All steps, and which of them a file holds.
+    path, file_sha256
+        As of the :class:`Editor`.
+    """
+
+    history: History
+    path: Path | None = None
+    file_sha256: str | None = None
 
 
 class Editor:
@@ -60,6 +78,16 @@ class Editor:
         return self._history.session
 
     @property
+    def rules(self) -> BodyRules:
+        """What is chosen for the elements of the session's body, where it is of a model's."""
+        return self._history.rules
+
+    @property
+    def work(self) -> Work:
+        """All of it, to be taken up again after something else."""
+        return Work(self._history, self.path, self.file_sha256)
+
+    @property
     def is_previewing(self) -> bool:
         """Whether a drag is under way."""
         return self._preview is not None
@@ -90,10 +118,16 @@ class Editor:
             self._preview = None
             self._announce()
 
-    def commit(self, session: Session, label: str, merge_key: str | None = None) -> None:
+    def commit(
+        self,
+        session: Session,
+        label: str,
+        merge_key: str | None = None,
+        rules: BodyRules | None = None,
+    ) -> None:
         """Make a session the current one, as a step that can be undone."""
         self._preview = None
-        self._history.commit(session, label, merge_key)
+        self._history.commit(session, label, merge_key, rules)
         self._announce()
 
     def attempt(self, edit: Callable[[Session], Session], label: str) -> str:
@@ -124,6 +158,7 @@ class Editor:
         *,
         sha256: str | None = None,
         saved: bool = True,
+        rules: BodyRules = NO_RULES,
     ) -> None:
         """Start over with another session: nothing before it can be undone.
 
@@ -135,11 +170,18 @@ class Editor:
             Its file, and the hash of that when it was read.
         saved
             False for a session that no file holds as it is.
+        rules
+            What is chosen for the elements of its body.
         """
-        self._history = History(session)
-        self._history.mark_saved(saved=saved)
+        history = History(session, rules)
+        history.mark_saved(saved=saved)
+        self.take_up(Work(history, path, sha256))
+
+    def take_up(self, work: Work) -> None:
+        """Go on with what was set aside, its steps included; what is here is for others to keep."""
+        self._history = work.history
         self._preview = None
-        self.path, self.file_sha256 = path, sha256
+        self.path, self.file_sha256 = work.path, work.file_sha256
         self._announce()
         self.saved.emit()
 

@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from pinwarp.core.frame_warp import BodyRules
 from pinwarp.session.session import Session
+
+NO_RULES = BodyRules()
 
 
 @dataclass(frozen=True)
 class Step:
-    """A session, and in words what was done to get there."""
+    """A session, and in words what was done to get there.
+
+    Where the session is of a body of a model, it comes with what is chosen for the body's elements.
+    """
 
     session: Session
     label: str = ""
     merge_key: str | None = None
+    rules: BodyRules = NO_RULES
 
 
 class History:
@@ -31,8 +38,8 @@ class History:
     'mm'
     """
 
-    def __init__(self, session: Session) -> None:
-        self._past: list[Step] = [Step(session)]
+    def __init__(self, session: Session, rules: BodyRules = NO_RULES) -> None:
+        self._past: list[Step] = [Step(session, rules=rules)]
         self._future: list[Step] = []
         self._saved: Session | None = session
 
@@ -40,6 +47,16 @@ class History:
     def session(self) -> Session:
         """The current session."""
         return self._past[-1].session
+
+    @property
+    def saved(self) -> Session | None:
+        """The session as its file holds it; None where none does."""
+        return self._saved
+
+    @property
+    def rules(self) -> BodyRules:
+        """What is chosen for the elements of the session's body, where it is of one."""
+        return self._past[-1].rules
 
     @property
     def undo_label(self) -> str | None:
@@ -56,18 +73,25 @@ class History:
         """Whether the session differs from the one saved last."""
         return self._saved is None or self.session != self._saved
 
-    def commit(self, session: Session, label: str, merge_key: str | None = None) -> None:
-        """Make a session the current one.
+    def commit(
+        self,
+        session: Session,
+        label: str,
+        merge_key: str | None = None,
+        rules: BodyRules | None = None,
+    ) -> None:
+        """Make a session the current one; the rules stay without others.
 
-        A session that equals the current one leaves no step. Commits in a row with the same
-        merge key become one step.
+        What equals the current one leaves no step. Commits in a row with the same merge key
+        become one step.
         """
-        if session == self.session:
+        rules = self.rules if rules is None else rules
+        if session == self.session and rules == self.rules:
             return
         last = self._past[-1]
         if merge_key is not None and last.merge_key == merge_key and not self._future:
             self._past.pop()
-        self._past.append(Step(session, label, merge_key))
+        self._past.append(Step(session, label, merge_key, rules))
         self._future.clear()
 
     def undo(self) -> Session:

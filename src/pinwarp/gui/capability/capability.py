@@ -32,6 +32,8 @@ class Panel:
         What it shows, and at which edge of the window.
     height_changed
         For a widget that is to have no more height than it needs: emits when it needs another.
+    is_open
+        Whether it is there from the start; else somebody opens it.
     """
 
     key: str
@@ -39,6 +41,7 @@ class Panel:
     widget: QWidget
     area: Qt.DockWidgetArea = RIGHT
     height_changed: Any = None
+    is_open: bool = True
 
 
 class Capability:
@@ -79,6 +82,10 @@ class Capability:
 
     def recall(self, settings: QSettings) -> None:
         """Look as it was remembered."""
+
+    def may_close(self) -> bool:
+        """Ask about what would be lost with the window; False when the user would rather stay."""
+        return True
 
     def shut_down(self) -> None:
         """Let go of workers, graphics and the editor: the window is about to close."""

@@ -18,7 +18,7 @@ from pinwarp.gui.files.saving import Saving
 from pinwarp.gui.files.session_meshes import SessionMeshes
 from pinwarp.gui.tasks.file_tasks import FileTasks
 from pinwarp.session.editor import Editor
-from pinwarp.session.keeping.journal import Journal
+from pinwarp.session.keeping.journal import Aside, Journal
 from pinwarp.session.keeping.recovery import LostWork, OtherWindow, find_lost_work, window_with
 from pinwarp.session.session import Session
 
@@ -114,6 +114,26 @@ class Recovery(QObject, Capability):
         if self._windows is None or self._journal is None:
             return None
         return window_with(self._windows, path, self._journal.folder)
+
+    def set_aside(self) -> Aside | None:
+        """Keep the editor's unsaved work apart, before other work takes its place."""
+        if self._journal is None:
+            return None
+        try:
+            return self._journal.set_aside()
+        except OSError as error:
+            self._on_failure(error)
+            return None
+
+    def take_up(self, aside: Aside | None) -> None:
+        """Keep with the window's own again what was set aside: the editor has it by now."""
+        if self._journal is not None and aside is not None:
+            self._journal.take_up(aside)
+
+    def forget(self, aside: Aside | None) -> None:
+        """Remove what was set aside: it was saved, or discarded on purpose."""
+        if self._journal is not None and aside is not None:
+            self._journal.forget(aside)
 
     def shut_down(self) -> None:
         """Forget the work of this window: it was saved, or discarded on purpose."""

@@ -19,6 +19,7 @@ from pinwarp.io.meshes import MeshFile
 from pinwarp.io.reading import hash_of
 from pinwarp.io.session_file import write_session
 from pinwarp.session.editor import Editor
+from pinwarp.session.keeping.files import is_mesh_there
 from pinwarp.session.session import Session, to_record
 
 
@@ -48,6 +49,7 @@ class Saving(Capability):
         self._rested = rested
         self._tasks = tasks
         self._recent = recent
+        self._proposal_of: Callable[[], Path | None] = lambda: None
         self.actions = (
             Action(
                 "save",
@@ -60,6 +62,10 @@ class Saving(Capability):
             ),
             Action("save_as", "Save Session &As…", self.save_as, at="File.32", keys="Ctrl+Shift+S"),
         )
+
+    def may_close(self) -> bool:
+        """Ask about unsaved changes before the window closes."""
+        return self.may_lose_changes()
 
     def may_lose_changes(self) -> bool:
         """Ask about unsaved changes; False when the user would rather stay.
@@ -102,7 +108,7 @@ class Saving(Capability):
 
     def save_as(self) -> bool:
         """Ask where to save; say whether it was saved."""
-        proposal = self._editor.path or self._tasks.folder() / f"untitled{SESSION_SUFFIX}"
+        proposal = self._editor.path or self._proposal()
         asked = self._tasks.dialogs.ask_save("Save the session", SESSION_FILES, proposal)
         if asked is None:
             return False
@@ -111,6 +117,13 @@ class Saving(Capability):
         path = asked.with_name(asked.name.removesuffix(".csv") + SESSION_SUFFIX)
         # The file dialog has asked about another name.
         return self._overwrite(path, "is there already") if path.exists() else self._save_to(path)
+
+    def name_untitled(self, proposal: Callable[[], Path | None]) -> None:
+        """Ask first how a session that has no name yet may be called; None leaves it untitled."""
+        self._proposal_of = proposal
+
+    def _proposal(self) -> Path:
+        return self._proposal_of() or self._tasks.folder() / f"untitled{SESSION_SUFFIX}"
 
     def _overwrite(self, path: Path, reason: str) -> bool:
         match self._tasks.dialogs.ask_overwrite(path.name, reason):
@@ -122,25 +135,37 @@ class Saving(Capability):
                 return False
 
     def _save_to(self, path: Path) -> bool:
-        record = to_record(self._rested(self._editor.committed))
+        notes = self.write(self._editor.committed, path)
+        if not notes:
+            self._notice_lost_file()
+            return False
+        self._editor.mark_saved(path, hash_of(path))
+        self._recent.add(path)
+        gone = [file.path for file in self._meshes() if not is_mesh_there(file.path)]
+        notes += [f"but its mesh {mesh.name} is not in {mesh.parent} any more" for mesh in gone]
+        self._tasks.said.emit(", ".join(notes))
+        return True
+
+    def write(self, session: Session, path: Path) -> list[str]:
+        """Write a session, and keep what was there before beside it.
+
+        Returns
+        -------
+        list of str
+            What is to be said of it; nothing where it was not written, which is told by then.
+        """
+        record = to_record(self._rested(session))
         unkept: list[OSError | None] = []
 
         def write() -> None:
             unkept.append(write_keeping_previous(path, lambda path: write_session(path, record)))
 
         if not self._tasks.write(write, path):
-            self._notice_lost_file()
-            return False
-        self._editor.mark_saved(path, hash_of(path))
-        self._recent.add(path)
-        problem = unkept[0]
+            return []
         notes = [f"Saved {path.name}"]
-        if problem is not None:
-            notes.append(f"but not its previous version: {words_of(problem)}")
-        gone = [file.path for file in self._meshes() if not os.path.exists(file.path)]
-        notes += [f"but its mesh {mesh.name} is not in {mesh.parent} any more" for mesh in gone]
-        self._tasks.said.emit(", ".join(notes))
-        return True
+        if unkept[0] is not None:
+            notes.append(f"but not its previous version: {words_of(unkept[0])}")
+        return notes
 
     def _meshes(self) -> list[MeshFile]:
         """Return the meshes that were read, the source first."""

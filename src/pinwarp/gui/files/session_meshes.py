@@ -62,6 +62,10 @@ class SessionMeshes:
         RangeError where it is too large or too small to be drawn.
         """
         file = read_any_mesh(path, progress=lambda share, stage: progress(0.7 * share, stage))
+        return self.ready(file, progress)
+
+    def ready(self, file: MeshFile, progress: Progress) -> MeshFile:
+        """Make a mesh that was read ready to be drawn, as :meth:`read`."""
         progress(0.75, "preparing to draw")
         check_drawable(file.mesh.vertices)
         self._keep_surface(file.mesh, Surface(file.mesh))

@@ -94,7 +94,7 @@ class MainWindow(WindowFrame):
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Ask about unsaved work, then let go of everything, what was made last first."""
-        if not self.parts.saving.may_lose_changes():
+        if not all(part.may_close() for part in self.parts):
             event.ignore()
             return
         self.save_layout(self._settings)

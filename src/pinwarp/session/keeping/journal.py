@@ -6,6 +6,8 @@ Every window has a folder of its own::
         lock               held by the operating system's lock while the window lives
         window.json        which process that is, and which session it has open
         work.pinwarp.csv   its unsaved work; not there while everything is saved
+
+Unsaved work that a window has set aside for other work is in one more folder of that kind.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ import shutil
 import socket
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 
@@ -47,6 +49,14 @@ class _State:
     label: str | None
     edited: datetime
     opened: datetime
+
+
+@dataclass(frozen=True)
+class Aside:
+    """Where unsaved work is kept that was set aside: a folder as of a window, and its lock."""
+
+    folder: Path
+    lock: FileLock
 
 
 class Journal:
@@ -81,6 +91,7 @@ class Journal:
         self._noted: _State | None = None
         self._told: dict[str, object] | None = None
         self._inherited: list[tuple[Path, FileLock]] = []
+        self._aside: list[Aside] = []
         self._closing = threading.Event()
         # Before anything is drawn: whatever happens then, the work is kept.
         editor.session_changed.connect(self._note, priority=1)
@@ -103,6 +114,39 @@ class Journal:
             self._waiting = self._waiting or self._noted
             self._changed.notify()
 
+    def set_aside(self) -> Aside | None:
+        """Keep the editor's unsaved work in a folder of its own: other work is about to come.
+
+        It is there when this returns.
+
+        Returns
+        -------
+        Aside or None
+            Where it is; None where everything is saved.
+
+        Raises
+        ------
+        OSError
+            When it cannot be written.
+        """
+        state = self._state()
+        if state.session is None:
+            return None
+        aside = Aside(*_own_folder(self.folder.parent))
+        self._aside.append(aside)
+        _write_into(aside.folder, state)
+        return aside
+
+    def take_up(self, aside: Aside) -> None:
+        """Keep what was set aside with the window's own again: the editor has it by now."""
+        self._aside.remove(aside)
+        self.inherit(aside.folder, aside.lock)
+
+    def forget(self, aside: Aside) -> None:
+        """Remove what was set aside: it was saved, or discarded on purpose."""
+        self._aside.remove(aside)
+        remove_window(aside.folder, aside.lock)
+
     def close(self) -> None:
         """Forget the work: it was saved, or discarded on purpose."""
         self._editor.session_changed.disconnect(self._note)
@@ -111,26 +155,28 @@ class Journal:
             self._closing.set()
             self._changed.notify()
         self._thread.join()
-        for folder, lock in (*self._inherited, (self.folder, self._lock)):
+        aside = ((one.folder, one.lock) for one in self._aside)
+        for folder, lock in (*self._inherited, *aside, (self.folder, self._lock)):
             remove_window(folder, lock)
 
     def _note(self, _changed: object = None) -> None:
         """Ask for the committed session to be written; a drag under way is not yet one."""
-        editor = self._editor
-        if editor.is_previewing:
+        if self._editor.is_previewing:
             return
-        session, noted = editor.committed if editor.is_dirty else None, self._noted
-        now = datetime.now().astimezone()
-        opened = now
-        path = editor.path.absolute() if editor.path is not None else None
-        if noted is not None and noted.path == path:
-            if noted.session is session:
+        state, noted = self._state(), self._noted
+        if noted is not None and noted.path == state.path:
+            if noted.session is state.session:
                 return
-            opened = noted.opened
-        state = _State(session, path, editor.file_sha256, editor.undo_label, now, opened)
+            state = replace(state, opened=noted.opened)
         with self._changed:
             self._noted = self._waiting = state
             self._changed.notify()
+
+    def _state(self) -> _State:
+        editor, now = self._editor, datetime.now().astimezone()
+        session = editor.committed if editor.is_dirty else None
+        path = editor.path.absolute() if editor.path is not None else None
+        return _State(session, path, editor.file_sha256, editor.undo_label, now, now)
 
     def _keep_writing(self) -> None:
         while (task := self._next()) is not None:
@@ -162,22 +208,29 @@ class Journal:
     def _write(self, state: _State) -> None:
         # Somebody may have tidied up the folder of all windows.
         self.folder.mkdir(parents=True, exist_ok=True)
-        about = {
-            "process": os.getpid(),
-            "host": socket.gethostname(),
-            "session": str(state.path) if state.path is not None else None,
-            "since": state.opened.isoformat(),
-        }
-        if about != self._told or not (self.folder / WINDOW).exists():
-            write_atomically(self.folder / WINDOW, json.dumps(about))
-            self._told = about
-        work = self.folder / WORK
-        if state.session is None:
-            work.unlink(missing_ok=True)
-        else:
-            record = to_record(state.session)
-            unsaved = UnsavedWork(record, state.path, state.sha256, state.label, state.edited)
-            write_work(work, unsaved)
+        self._told = _write_into(self.folder, state, self._told)
+
+
+def _write_into(
+    folder: Path, state: _State, told: dict[str, object] | None = None
+) -> dict[str, object]:
+    """Write a state, and what is told of its window where that is another than before."""
+    about: dict[str, object] = {
+        "process": os.getpid(),
+        "host": socket.gethostname(),
+        "session": str(state.path) if state.path is not None else None,
+        "since": state.opened.isoformat(),
+    }
+    if about != told or not (folder / WINDOW).exists():
+        write_atomically(folder / WINDOW, json.dumps(about))
+    work = folder / WORK
+    if state.session is None:
+        work.unlink(missing_ok=True)
+    else:
+        record = to_record(state.session)
+        unsaved = UnsavedWork(record, state.path, state.sha256, state.label, state.edited)
+        write_work(work, unsaved)
+    return about
 
 
 def remove_window(folder: Path, lock: FileLock) -> None:
