@@ -14,6 +14,7 @@ from pinwarp.cli.telling import refuse_existing, tell_notes
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.model_rows import Outcome
 from pinwarp.core.words import counted, some_of
+from pinwarp.io.file_names import MODEL_SUFFIX
 from pinwarp.io.model_manifest import read_model_manifest
 from pinwarp.io.model_report import report_json, report_text
 from pinwarp.io.osim.reading import read_model
@@ -22,7 +23,7 @@ from pinwarp.session.model.opensim_check import check_in_opensim
 from pinwarp.session.model.overview import overview
 from pinwarp.session.model.study import ModelStudy, read_study, study_of
 from pinwarp.session.model.warped import WarpedModel, warped_model
-from pinwarp.session.model.writing import SUFFIX, outputs_of, write_model
+from pinwarp.session.model.writing import outputs_of, write_model
 from pinwarp.session.study.batch import run_all
 from pinwarp.session.study.model_cohort import MODELS, plan_models
 from pinwarp.session.study.scheduler import address_of
@@ -120,7 +121,7 @@ def model(
     it, and NEW_report.csv says of every element whether it was warped, kept or flagged.
     """
     scheduler = None if scheduler is None else address_of(scheduler)
-    is_model = model.suffix.lower() == SUFFIX
+    is_model = model.suffix.lower() == MODEL_SUFFIX
     if is_model and not body:
         _list(model, geometry or [], as_json)
         return

@@ -80,6 +80,8 @@ class WarpedBody:
         New meshes by key, in the frame that they stand in, to be drawn without factors.
     frames, places
         Where every frame and every (3,) point is now in the body, by path.
+    wraps
+        Where every wrap is now in the body, and its size, by path.
     """
 
     parts: BodyParts
@@ -89,6 +91,7 @@ class WarpedBody:
     meshes: dict[int, Mesh]
     frames: dict[str, Placement]
     places: dict[str, Matrix]
+    wraps: dict[str, tuple[Placement, Matrix]]
 
 
 def warp_body(
@@ -142,6 +145,7 @@ def warp_body(
         carrier.meshes,
         {path: carrier.frames.after(path) for path in parts.frames},
         {point.path: carrier.frames.new_place(point) for point in parts.points},
+        {path: now for path, (_, _, now) in carrier.wraps.items()},
     )
 
 
@@ -162,7 +166,7 @@ class _Carrier:
         self.functions: dict[int, FunctionChange] = {}
         self.meshes: dict[int, Mesh] = {}
         # Wraps and bones in the body's frame, as they were and as they are now.
-        self._wraps: dict[str, tuple[WrapShape, _Wrap, _Wrap]] = {}
+        self.wraps: dict[str, tuple[WrapShape, _Wrap, _Wrap]] = {}
         self._bones: list[tuple[Mesh, Mesh]] = []
 
     def carry(self) -> None:
@@ -269,9 +273,9 @@ class _Carrier:
         }
         for point, was, now in zip(points, before, after, strict=True):
             for path in point.wraps:
-                if path not in self._wraps:
+                if path not in self.wraps:
                     continue
-                shape, old_wrap, new_wrap = self._wraps[path]
+                shape, old_wrap, new_wrap = self.wraps[path]
                 if is_in_wrap(shape, *new_wrap, now) and not is_in_wrap(shape, *old_wrap, was):
                     name = path.rsplit("/", 1)[-1]
                     flags[point.key] = (
@@ -286,7 +290,7 @@ class _Carrier:
         now = (fit.placement, fit.size)
         if wrap.path in self._rules.keep:
             now = (self.frames.after(wrap.frame).holding(wrap.placement), wrap.size)
-        self._wraps[wrap.path] = (wrap.shape, (old, wrap.size), now)
+        self.wraps[wrap.path] = (wrap.shape, (old, wrap.size), now)
         figures = self._figures(old.origin, now[0].origin) | {"turned": turn_in_degrees(fit.turn)}
         if self._is_kept(wrap, **figures):
             return

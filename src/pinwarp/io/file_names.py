@@ -7,6 +7,8 @@ from pathlib import Path
 
 SESSION_SUFFIX = ".pinwarp.csv"
 BACKUP_SUFFIX = ".bak"
+MODEL_SUFFIX = ".osim"
+STUDY_SUFFIX = ".pinwarp-model.csv"
 
 
 def is_session(path: Path) -> bool:
@@ -18,6 +20,17 @@ def is_session(path: Path) -> bool:
     (True, False)
     """
     return path.name.lower().endswith(SESSION_SUFFIX)
+
+
+def is_model_file(path: Path) -> bool:
+    """Say by its name whether a file is a model of OpenSim or the study of one.
+
+    Examples
+    --------
+    >>> [is_model_file(Path(name)) for name in ("leg.osim", "leg.pinwarp-model.csv", "leg.stl")]
+    [True, True, False]
+    """
+    return path.name.lower().endswith((MODEL_SUFFIX, STUDY_SUFFIX))
 
 
 def session_name(path: Path | None) -> str:

@@ -13,7 +13,6 @@ from pinwarp.io.csv_cells import YES_NO, as_sentence, formula_unquoted, shortene
 from pinwarp.io.csv_text import Row, csv_line, rows_of
 from pinwarp.io.text import lines_of, read_text, refuse_binary
 
-SUFFIX = ".pinwarp-model.csv"
 VERSION = 1
 COLUMNS = ("body", "session", "orientation_rule", "enabled", "note")
 KEEP, TURN = "keep", "turn"

@@ -27,6 +27,8 @@ class BodyOverview:
         The files of its meshes as the model names them.
     missing
         Those of them that were not found.
+    paths
+        Those of its elements that rules are for, meshes aside.
     counts
         How many elements there are of each kind that a rule carries.
     kept
@@ -37,6 +39,7 @@ class BodyOverview:
     path: str
     meshes: tuple[str, ...]
     missing: tuple[str, ...]
+    paths: frozenset[str]
     counts: dict[str, int]
     kept: tuple[tuple[str, str, str], ...]
 
@@ -98,6 +101,7 @@ def overview(model: OsimModel, folders: Iterable[str | Path] = ()) -> tuple[Body
                 body,
                 tuple(dict.fromkeys(name for name, _ in names)),
                 tuple(dict.fromkeys(name for name, place in names if place is None)),
+                parts.paths,
                 _counts(parts),
                 tuple((x.kind, x.path, x.words) for x in parts.kept if x.flag),
             )

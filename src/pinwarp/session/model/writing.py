@@ -12,6 +12,7 @@ from pinwarp.core.errors import FileFormatError, PinwarpError
 from pinwarp.core.frame_warp import BodyRules, CarriedFrames
 from pinwarp.core.model_warp import WarpedBody
 from pinwarp.io.atomic import write_atomically
+from pinwarp.io.file_names import MODEL_SUFFIX
 from pinwarp.io.meshes import write_mesh
 from pinwarp.io.model_report import write_report_csv
 from pinwarp.io.osim.body_parts import body_parts
@@ -21,7 +22,6 @@ from pinwarp.io.osim.reading import model_of
 from pinwarp.session.model.warped import WarpedModel
 from pinwarp.session.outputs.replacing import refuse_to_replace
 
-SUFFIX = ".osim"
 # Metres that a place may be off when it is read again: nothing but rounding.
 _ROUNDING = 1e-9
 
@@ -42,8 +42,8 @@ def outputs_of(warped: WarpedModel, path: str | Path) -> tuple[Path, ...]:
         When it is no ``.osim`` file, or something that was read would be replaced.
     """
     place = Path(os.path.abspath(path))
-    if place.suffix.lower() != SUFFIX:
-        raise PinwarpError(f"{place.name} is no name of a model: it ends in {SUFFIX}.")
+    if place.suffix.lower() != MODEL_SUFFIX:
+        raise PinwarpError(f"{place.name} is no name of a model: it ends in {MODEL_SUFFIX}.")
     meshes = [place.parent / name for name in warped.mesh_names(_folder(place)).values()]
     outputs = (place, place.with_name(f"{place.stem}_report.csv"), *meshes)
     study = warped.study
