@@ -20,6 +20,7 @@ def main() -> None:
 def _open_window(
     *,
     session: Path | None,
+    model: Path | None,
     source: Path | None,
     destination: Path | None,
     source_landmarks: Path | None,
@@ -39,7 +40,7 @@ def _open_window(
     from pinwarp.gui.app import run
     from pinwarp.gui.files.documents import Opening
 
-    opening = Opening(session, source, destination, source_landmarks, destination_landmarks)
+    opening = Opening(session, source, destination, source_landmarks, destination_landmarks, model)
     return run(opening, demo=demo, screenshot=screenshot)
 
 

@@ -25,6 +25,7 @@ from pinwarp.gui.tasks.dialogs import Existing
 from pinwarp.gui.window.main_window import MainWindow
 from pinwarp.io.samples import assets_folder, sample_session
 from pinwarp.session.keeping.recovery import LostWork
+from pinwarp.session.model.warped import WarpedModel
 
 
 @pytest.fixture(scope="session")
@@ -63,6 +64,8 @@ class ScriptedDialogs:
         self.at_import: list[Callable[[ImportDialog], None]] = []
         self.at_specimen: list[Callable[[SpecimenDialog], None]] = []
         self.choices: list[int] = []
+        self.dry_runs: list[WarpedModel] = []
+        self.export_model = True
         self.choice_questions: list[tuple[str, str, str, list[str]]] = []
         self.errors: list[tuple[str, str]] = []
         self.told: list[tuple[str, str, str]] = []
@@ -135,6 +138,10 @@ class ScriptedDialogs:
     def ask_choice(self, title, text, more, labels):
         self.choice_questions.append((title, text, more, list(labels)))
         return self.choices.pop(0) if self.choices else len(labels) - 1
+
+    def ask_dry_run(self, warped):
+        self.dry_runs.append(warped)
+        return self.export_model
 
     def tell_error(self, title, text):
         self.errors.append((title, text))

@@ -9,7 +9,7 @@ from typing import Annotated, Protocol
 import typer
 
 from pinwarp.cli.options import Version
-from pinwarp.io.file_names import is_session
+from pinwarp.io.file_names import is_model_file, is_session
 
 
 class OpenWindow(Protocol):
@@ -19,6 +19,7 @@ class OpenWindow(Protocol):
         self,
         *,
         session: Path | None,
+        model: Path | None,
         source: Path | None,
         destination: Path | None,
         source_landmarks: Path | None,
@@ -36,8 +37,9 @@ def make_open(open_window: OpenWindow) -> Callable[..., None]:
         files: Annotated[
             list[Path] | None,
             typer.Argument(
-                metavar="[SOURCE DESTINATION | SESSION]",
-                help="Two meshes, or a saved session (.pinwarp.csv).",
+                metavar="[SOURCE DESTINATION | SESSION | MODEL]",
+                help="Two meshes, a saved session (.pinwarp.csv), or a model (.osim) or its study "
+                "(.pinwarp-model.csv).",
                 show_default=False,
             ),
         ] = None,
@@ -56,12 +58,13 @@ def make_open(open_window: OpenWindow) -> Callable[..., None]:
     ) -> None:
         """Open the window and watch one bone warp into the other, live ("open" may be left out)."""
         del version  # told before anything else
-        session, source, destination = _sort_files(files or [])
+        session, model, source, destination = _sort_files(files or [])
         if demo and (files or source_landmarks or destination_landmarks):
             raise typer.BadParameter("--demo opens the sample bones: give no files with it.")
         raise typer.Exit(
             open_window(
                 session=session,
+                model=model,
                 source=source,
                 destination=destination,
                 source_landmarks=source_landmarks,
@@ -74,18 +77,22 @@ def make_open(open_window: OpenWindow) -> Callable[..., None]:
     return open_
 
 
-def _sort_files(files: list[Path]) -> tuple[Path | None, Path | None, Path | None]:
-    """Tell a session from meshes."""
+def _sort_files(
+    files: list[Path],
+) -> tuple[Path | None, Path | None, Path | None, Path | None]:
+    """Tell a session and a model from meshes."""
     for path in files:
         if not path.exists():
             # A word without a dot may be a mistyped command.
             hint = "" if "." in str(path) else " It is no command either: see pinwarp --help."
             raise typer.BadParameter(f"{path} does not exist.{hint}")
     if len(files) == 1 and is_session(files[0]):
-        return files[0], None, None
-    if any(is_session(path) for path in files):
-        raise typer.BadParameter("Give one session, or a source and a destination mesh.")
+        return files[0], None, None, None
+    if len(files) == 1 and is_model_file(files[0]):
+        return None, files[0], None, None
+    if any(is_session(path) or is_model_file(path) for path in files):
+        raise typer.BadParameter("Give one session or model, or a source and a destination mesh.")
     if len(files) > 2:
         raise typer.BadParameter("Give at most two meshes: the source and the destination.")
     source, destination = (*files, None, None)[:2]
-    return None, source, destination
+    return None, None, source, destination

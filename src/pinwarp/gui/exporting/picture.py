@@ -21,6 +21,7 @@ from pinwarp.gui.scene.drawables import (
     Dots,
     Legend,
     Markers,
+    ModelElements,
     Paths,
     ScaleBar,
     Slides,
@@ -203,7 +204,7 @@ def _paint_signs(image: QImage, view: Canvas, scene: Scene, place: QRect) -> Non
 def _painted(order: PictureOrder, view: Canvas) -> Scene:
     """Return what is painted into a picture, of all that a view shows."""
     framing = (Caption, ScaleBar, Legend) if order.framed else ()
-    placed = (Markers, Arrows, Dots, Paths, Slides) if order.landmarks else ()
+    placed = (Markers, Arrows, Dots, Paths, Slides, ModelElements) if order.landmarks else ()
     scene = view.scene.only(*framing, *placed)
     signs = scene.of(Markers)
     if signs is None:

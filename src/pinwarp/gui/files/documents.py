@@ -24,7 +24,12 @@ from pinwarp.gui.tasks.file_tasks import (
     SESSION_FILES,
     FileTasks,
 )
-from pinwarp.io.file_names import is_backup, is_session, session_name
+from pinwarp.io.file_names import (
+    is_backup,
+    is_model_file,
+    is_session,
+    session_name,
+)
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
 from pinwarp.io.meshes import MESH_SUFFIXES, MeshFile
 from pinwarp.io.reading import hash_of
@@ -49,11 +54,12 @@ class Opening:
     destination: Path | None = None
     source_landmarks: Path | None = None
     destination_landmarks: Path | None = None
+    model: Path | None = None
 
     @property
     def paths(self) -> list[Path]:
         """All of them."""
-        files = (self.session, self.source, self.destination)
+        files = (self.session, self.source, self.destination, self.model)
         landmarks = (self.source_landmarks, self.destination_landmarks)
         return [path for path in (*files, *landmarks) if path is not None]
 
@@ -99,6 +105,7 @@ class Documents(Capability):
         self._meshes = meshes
         self._imports = imports
         self._window_with = window_with
+        self._open_model: Callable[[Path], None] | None = None
         self.recent_menu = QMenu("Open &Recent")
         self.recent_menu.aboutToShow.connect(self._fill_recent)
         self.actions = (
@@ -193,8 +200,14 @@ class Documents(Capability):
 
     # Opening
 
+    def hand_models_to(self, open_model: Callable[[Path], None]) -> None:
+        """Let models and their studies be opened by who knows them."""
+        self._open_model = open_model
+
     def open(self, opening: Opening) -> None:
         """Open what the command line names."""
+        if opening.model is not None and self._open_model is not None:
+            self._open_model(opening.model)
         if opening.session is not None:
             self.open_session(opening.session)
             return
@@ -211,7 +224,14 @@ class Documents(Capability):
                 self._imports.bring_in(path, side, asking=False)
 
     def open_files(self, side: Side, paths: Sequence[Path]) -> None:
-        """Open files dropped onto a viewport: a session, meshes or landmarks of that side."""
+        """Open files dropped onto a viewport: a session, meshes or landmarks of that side.
+
+        A model comes before all of these.
+        """
+        models = [path for path in paths if is_model_file(path)]
+        if models and self._open_model is not None:
+            self._open_model(models[0])
+            return
         sessions = [path for path in paths if is_session(path)]
         if sessions:
             if self._saving.may_lose_changes():

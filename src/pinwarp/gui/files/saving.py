@@ -16,10 +16,10 @@ from pinwarp.gui.tasks.file_tasks import SESSION_FILES, FileTasks
 from pinwarp.io.backup import write_keeping_previous
 from pinwarp.io.file_names import SESSION_SUFFIX, is_session, session_name
 from pinwarp.io.meshes import MeshFile
+from pinwarp.io.osim.bone import is_mesh_there
 from pinwarp.io.reading import hash_of
 from pinwarp.io.session_file import write_session
 from pinwarp.session.editor import Editor
-from pinwarp.session.keeping.files import is_mesh_there
 from pinwarp.session.session import Session, to_record
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+import itertools
+from collections.abc import Hashable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,3 +67,10 @@ class HiddenPlaces:
             self._next = int(rows[-1] + 1) % count
             self._stale -= number
         return self._hidden
+
+
+def runs(places: NDArray, behind: NDArray[np.bool_]) -> Iterator[tuple[NDArray, bool]]:
+    """Yield the pieces of a line that are hidden, or not, from end to end; they meet."""
+    edges = [0, *(np.flatnonzero(np.diff(behind)) + 1).tolist(), len(places)]
+    for begin, end in itertools.pairwise(edges):
+        yield places[max(0, begin - 1) : end], bool(behind[begin])

@@ -32,6 +32,7 @@ from pinwarp.gui.painted.markers import (
     extent,
     marker_pixmap,
 )
+from pinwarp.gui.painted.model_elements import ModelPainter
 from pinwarp.gui.painted.scale_bar import paint_scale_bar
 from pinwarp.gui.painted.semilandmarks import SemilandmarkPainter
 from pinwarp.gui.scene.drawables import (
@@ -46,6 +47,7 @@ from pinwarp.gui.scene.drawables import (
     Hint,
     Marker,
     Markers,
+    ModelElements,
     OtherGhosts,
     Paths,
     ScaleBar,
@@ -82,6 +84,7 @@ class MarkerLayer(QWidget):
         self._legend: PaintedLegend | None = None
         self._scene = Scene(Side.SOURCE)
         self.semilandmarks = points = SemilandmarkPainter(projection, self._project)
+        self._model = ModelPainter(projection, self._project)
         self._again = QTimer(self, singleShot=True, interval=_REST_MS)
         self._again.timeout.connect(self._on_rest)
         # In this order: what comes later lies on top.
@@ -89,6 +92,7 @@ class MarkerLayer(QWidget):
             Caption: self._paint_caption,
             ScaleBar: self._paint_scale_bar,
             Hint: self._paint_hint,
+            ModelElements: self._paint_model,
             Paths: points.paint_paths,
             Slides: points.paint_slides,
             Dots: self._paint_dots,
@@ -204,12 +208,13 @@ class MarkerLayer(QWidget):
                     paint(painter, thing)
             if self.is_bone_lost and self._scene.of(Hint) is None:
                 self._paint_hint(painter, Hint(_OUT_OF_SIGHT))
-        self.semilandmarks.is_resting = False
-        if self.semilandmarks.is_stale:
+        points, model = self.semilandmarks, self._model
+        points.is_resting = model.is_resting = False
+        if points.is_stale or model.is_stale:
             self._again.start()
 
     def _on_rest(self) -> None:
-        self.semilandmarks.is_resting = True
+        self.semilandmarks.is_resting = self._model.is_resting = True
         self.update()
 
     def set_dark(self, dark: bool) -> None:
@@ -234,6 +239,13 @@ class MarkerLayer(QWidget):
 
     def _paint_hint(self, painter: QPainter, hint: Hint) -> None:
         paint_hint(painter, hint, QRectF(self.rect()), dark=self._dark)
+
+    def _paint_model(self, painter: QPainter, elements: ModelElements) -> None:
+        self._model.paint(painter, elements)
+        for words, position in elements.labels:
+            ((x, y),) = self._project([position])
+            at = QPointF(x, y)
+            draw_label(painter, words, at, self.room_at(at))
 
     def _paint_dots(self, painter: QPainter, dots: Dots) -> None:
         self.semilandmarks.paint_dots(painter, dots, self._ratio)

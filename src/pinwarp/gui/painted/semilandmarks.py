@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import functools
-import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 from qtpy.QtCore import QPointF, QRectF, Qt
 from qtpy.QtGui import QColor, QPainter, QPen, QPixmap, QPolygonF
 
-from pinwarp.gui.painted.hidden import HiddenPlaces
+from pinwarp.gui.painted.hidden import HiddenPlaces, runs
 from pinwarp.gui.painted.markers import FAINT
 from pinwarp.gui.scene.drawables import CurveHandle, DotKind, Dots, Handles, Paths, Slides
 from pinwarp.gui.scene.projection import Projection
@@ -105,7 +104,7 @@ class SemilandmarkPainter:
             behind = hidden[first_sample : first_sample + count].repeat(_STEP)[: len(on_sheet)]
             first, first_sample = first + len(on_sheet), first_sample + count
             rows = _apart(on_sheet)
-            for run, is_hidden in _runs(on_sheet[rows], behind[rows]):
+            for run, is_hidden in runs(on_sheet[rows], behind[rows]):
                 polygon = QPolygonF([QPointF(x, y) for x, y in run.tolist()])
                 for pen in _pens(line.colour, line.is_ghost, line.is_chosen, is_hidden):
                     painter.setPen(pen)
@@ -203,13 +202,6 @@ def _pens(colour: int, is_ghost: bool, is_chosen: bool, is_hidden: bool) -> tupl
             # As long on the screen under and over.
             pen.setDashPattern([2 * dash / pen.widthF() for dash in _DASHES])
     return pens
-
-
-def _runs(places: NDArray, behind: NDArray[np.bool_]) -> Iterator[tuple[NDArray, bool]]:
-    """Yield the pieces of a line that are hidden, or not, from end to end; they meet."""
-    edges = [0, *(np.flatnonzero(np.diff(behind)) + 1).tolist(), len(places)]
-    for begin, end in itertools.pairwise(edges):
-        yield places[max(0, begin - 1) : end], bool(behind[begin])
 
 
 def _dot_extent() -> float:

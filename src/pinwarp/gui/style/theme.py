@@ -44,6 +44,12 @@ GROUP_COLOURS = ("#7a3fb0", "#b3402a", "#0e7c86", "#c2377f", "#2b4fa8", "#5c6410
 
 FOLD_COLOUR = "#D55E00"
 
+# What stands on a body of a model: muscles, markers, wraps, and the axes of frames.
+MUSCLE_COLOUR = "#a3262a"
+MODEL_MARKER_COLOUR = "#0e7c86"
+WRAP_COLOUR = "#4a5fb5"
+AXIS_COLOURS = ("#c44a00", "#00805c", "#0072B2")
+
 # Maps of lengths: even steps of lightness from dark to light, told apart without red and green.
 SEQUENTIAL_COLOURS = (
     "#4b2a7f",

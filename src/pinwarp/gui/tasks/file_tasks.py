@@ -11,14 +11,17 @@ from pinwarp.core.errors import PinwarpError, words_of
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.jobs import Cancelled, SlowJob
 from pinwarp.gui.tasks.stepped_job import SteppedJob, Steps
-from pinwarp.io.file_names import SESSION_SUFFIX
+from pinwarp.io.file_names import MODEL_SUFFIX, SESSION_SUFFIX, STUDY_SUFFIX
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
 from pinwarp.io.meshes import MESH_SUFFIXES
+from pinwarp.io.osim.bone import split_bone_path
 from pinwarp.session.editor import Editor
 from pinwarp.session.signals import isolated
 
 MESH_FILES = "Meshes ({});;All files (*)".format(" ".join(f"*{suffix}" for suffix in MESH_SUFFIXES))
 SESSION_FILES = f"Sessions (*{SESSION_SUFFIX});;All files (*)"
+MODEL_FILES = f"Models (*{MODEL_SUFFIX} *{STUDY_SUFFIX});;All files (*)"
+STUDY_FILES = f"Studies of models (*{STUDY_SUFFIX});;All files (*)"
 LANDMARK_FILES = "Landmarks ({});;All files (*)".format(
     " ".join(f"*{suffix}" for suffix in LANDMARK_SUFFIXES)
 )
@@ -123,8 +126,16 @@ class FileTasks(Generic[Asking]):
         """Return the folder to look in first: the session's, or that of a mesh."""
         session = self._editor.committed
         files: list[Path] = [
-            file.path for file in (session.destination, session.source) if file is not None
+            _file_of(file.path)
+            for file in (session.destination, session.source)
+            if file is not None
         ]
         path = self._editor.path or (files[0] if files else None)
         # Unlike Path.home, this never fails where nobody knows the home folder.
         return path.parent if path is not None else Path(os.path.expanduser("~"))
+
+
+def _file_of(path: Path) -> Path:
+    """Return the file of a mesh, or the model of a bone."""
+    named = split_bone_path(path)
+    return path if named is None else named[0]

@@ -154,6 +154,8 @@ class WindowFrame(QMainWindow):
             if panel.height_changed is not None:
                 panel.height_changed.connect(lambda dock=dock: self._fit_dock(dock))
                 self._fitted.append(dock)
+            if not panel.is_open:
+                dock.hide()
         self.setTabPosition(RIGHT, QTabWidget.TabPosition.North)
         self._front = right[0]
         self._front.raise_()

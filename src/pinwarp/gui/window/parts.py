@@ -23,6 +23,9 @@ from pinwarp.gui.findings.presenter import FindingsPresenter
 from pinwarp.gui.importing.imports import LandmarkImports
 from pinwarp.gui.maps.overlay import OverlayControls
 from pinwarp.gui.maps.presenter import MapPresenter
+from pinwarp.gui.model.export import ModelExport
+from pinwarp.gui.model.opened import OpenedModel
+from pinwarp.gui.model.presenter import ModelPresenter
 from pinwarp.gui.penalty.comparison import PenaltyComparison
 from pinwarp.gui.penalty.snapshots import Snapshots
 from pinwarp.gui.penalty.tuning import PenaltyTuning
@@ -150,6 +153,18 @@ class Parts:
         self.documents = Documents(
             editor, tasks, recent, self.saving, meshes, self.imports, self.recovery.window_with
         )
+        opened = OpenedModel(editor, tasks, self.saving, self.recovery, meshes)
+        self.model = ModelPresenter(
+            editor,
+            opened,
+            self.warps,
+            self.quality,
+            scenes,
+            self.views,
+            tasks,
+            ModelExport(opened, tasks).action,
+        )
+        self.documents.hand_models_to(self.model.open)
         self.exports = Exports(editor, tasks)
         self.semilandmark_export = SemilandmarkExport(editor, tasks)
         self.pictures = PictureExport(editor, tasks, views, frame)
