@@ -304,6 +304,11 @@ def test_planes_and_four_landmarks_have_no_mirror_image():
     assert not is_mirrored(source, source * [-1, 1, 1])
     corners = np.vstack([np.eye(3), np.zeros(3)])
     assert not is_mirrored(corners, -corners)
+    rng = np.random.default_rng(2)
+    line = np.arange(8)[:, None] * [10, 20, 30]
+    for _ in range(30):
+        one, other = (line + 0.1 * rng.normal(size=(8, 3)) for _ in range(2))
+        assert not is_mirrored(one, other)
     noisy = source * [-1, 1, 1] + 0.05 * np.random.default_rng(1).normal(size=(8, 3))
     assert not is_mirrored(source, noisy)
 

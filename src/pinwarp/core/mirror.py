@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pinwarp.core.alignment import fit_similarity
+from pinwarp.core.lengths import rms
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.positions import as_positions, quiet
 
@@ -13,7 +14,9 @@ AXES = "xyz"
 # What a reflection must leave of the misfit of the best rotation, by the length that this share
 # of the pairs is below: the others may be wrong.
 MIRRORED, MOST = 0.75, 0.7
-# With fewer pairs there is no telling.
+# Where the best rotation misses them by no more than this share of their RMS radius, or with fewer
+# pairs, there is no telling.
+FLAT = 0.02
 LEAST_PAIRS = 5
 # Steps to the least sum of lengths; shorter ones than this share of the median weigh the same.
 STEPS, SHORT = 15, 0.05
@@ -122,8 +125,8 @@ def reflection_misfit(source: ArrayLike, destination: ArrayLike) -> float:
     if len(u) < LEAST_PAIRS:
         return 1.0
     turned, reflected = (_misfit(side, v) for side in (u, u * [-1, 1, 1]))
-    # Met either way: a plane, or a single place.
-    if turned <= 1e-6 * float(np.linalg.norm(v - v.mean(axis=0))):
+    # Met either way: most lie in a plane, on a line or at a single place.
+    if turned <= FLAT * rms(np.linalg.norm(v - v.mean(axis=0), axis=1)):
         return 1.0
     return reflected / turned
 
