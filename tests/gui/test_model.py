@@ -16,6 +16,7 @@ from tests.osim_models import POSE, copied_model, edited_model, paired, subject
 
 from pinwarp.core.landmarks import Side
 from pinwarp.core.model_rows import Outcome
+from pinwarp.gui.exporting.picture import PictureOrder, _painted
 from pinwarp.gui.files.file_dialogs import Answer
 from pinwarp.gui.files.lost_work_dialog import LostAnswer
 from pinwarp.gui.model import rule_tree
@@ -443,3 +444,54 @@ def test_the_window_can_be_closed_while_a_model_is_read(user, leg):
     assert not user.window.jobs.is_idle
     user.window.close()
     assert not user.window.isVisible()
+
+
+def test_the_report_and_a_picture_of_the_window_contain_the_model(user, leg):
+    open_model(user, leg)
+    choose_body(user, "thigh")
+    pair_body(user)
+    path = leg.parent / "thigh.html"
+    user.window.parts.report.export(path)
+    user.settle()
+    text = path.read_text()
+    assert "<h2>Model</h2>" in text
+    assert f"{KNEE} (marker)" in text
+    assert f"Model,{KNEE} (marker),moved," in path.with_suffix(".csv").read_text()
+    view = user.window.viewports[SOURCE]
+    assert ModelElements in {type(one) for one in _painted(PictureOrder(), view).drawables}
+
+
+REAL = Path("/work/shared/data")
+MODEL = REAL / "opensim-rajagopal2016" / "Rajagopal2016.osim"
+SUBJECT = REAL / "opensim-creator-femur" / "subject_femur_r.obj"
+
+
+@pytest.mark.skipif(not (MODEL.exists() and SUBJECT.exists()), reason="the real model is not here")
+def test_the_femur_of_a_real_model_becomes_a_subjects_by_the_mouse(user, tmp_path):
+    open_model(user, MODEL)
+    assert panel(user).bodies.topLevelItemCount() == 22
+    choose_body(user, "femur_r")
+    user.window.parts.documents.open_mesh(DESTINATION, SUBJECT)
+    user.settle()
+    assert user.dialogs.choice_questions == [], "both are in metres"
+    # Eight places down each bone, paired by clicks.
+    rows = (user.places_down_the_bone(side, 8) for side in Side)
+    for here, there in zip(*rows, strict=True):
+        user.click_position(SOURCE, here)
+        user.click_position(DESTINATION, there)
+    assert len(user.session.pairs) == 8
+    assert state_of(user, "femur_r") == "done*"
+    drawn = elements(user, DESTINATION)
+    assert drawn.is_of_muscle.sum() == 35
+    assert (~drawn.is_of_muscle).sum() == 6
+
+    new = tmp_path / "subject.osim"
+    user.dialogs.saves.append(new)
+    user.trigger("export_model")
+    assert user.dialogs.errors == []
+    (carried,) = user.dialogs.dry_runs
+    assert {row.body for row in carried.rows} == {"femur_r"}
+    moved = {row.path for row in carried.rows if row.is_warped}
+    assert "/forceset/vasint_r/path/vasint_r-P1" in moved
+    parts = bone_of(read_model(new), "/bodyset/femur_r").parts
+    assert len(parts.points) == 41

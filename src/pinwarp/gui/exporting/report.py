@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 
@@ -10,6 +10,7 @@ from qtpy.QtCore import QBuffer, QIODevice
 from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.landmarks import Side
+from pinwarp.core.model_rows import ElementRow
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.tasks.dialogs import Dialogs
@@ -39,6 +40,8 @@ class ReportExport(Capability):
     known
         Returns the last warp and what is known of its pairs, if anything: where they are those of
         the session, they are not found again.
+    elements
+        Returns what became of the elements of the model's body, where one is worked on.
     """
 
     def __init__(
@@ -48,6 +51,7 @@ class ReportExport(Capability):
         views: Mapping[Side, QWidget],
         name: Callable[[], str],
         known: Callable[[], tuple[WarpResult | None, Quality | None]],
+        elements: Callable[[], Sequence[ElementRow]],
     ) -> None:
         self._editor = editor
         self._tasks = tasks
@@ -64,7 +68,7 @@ class ReportExport(Capability):
                 possible=lambda: editor.session.pairs,
             ),
         )
-        self._known = known
+        self._known, self._elements = known, elements
 
     def ask_and_export(self) -> None:
         """Ask for a file and write the report there, with its numbers as CSV beside it."""
@@ -77,6 +81,7 @@ class ReportExport(Capability):
         """Write the report and its CSV."""
         session, title, now = self._editor.committed, self._name(), datetime.now()
         result, quality = self._known()
+        elements = self._elements()
         pictures = self._pictures()
         table = path.with_suffix(".csv")
 
@@ -86,6 +91,7 @@ class ReportExport(Capability):
                 solved(session, result),
                 now,
                 quality=quality,
+                elements=elements,
                 told=lambda share, stage: progress(0.1 + 0.7 * share, stage),
             )
             progress(0.8, "writing")

@@ -14,6 +14,7 @@ from qtpy.QtWidgets import QDockWidget
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.frame_warp import BodyRules
 from pinwarp.core.landmarks import Side
+from pinwarp.core.model_rows import ElementRow
 from pinwarp.core.words import counted
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability, Panel
@@ -194,6 +195,18 @@ class ModelPresenter(Capability):
         asked, figures = self._shown
         is_here = asked.bench is self._opened.bench and asked.body == self._opened.chosen
         return figures if is_here else None
+
+    @property
+    def rows(self) -> tuple[ElementRow, ...]:
+        """What became of every element, where that is of the session as it is."""
+        figures = self.figures
+        if (
+            figures is None
+            or not figures.is_warped
+            or figures.session is not self._editor.committed
+        ):
+            return ()
+        return figures.rows
 
     def drawables(self, side: Side) -> Iterator[Drawable]:
         """Return what stands on the body."""

@@ -11,6 +11,7 @@ from pinwarp.gui.window.fault_note import FaultNote
 from pinwarp.gui.window.faults import Faults
 from pinwarp.gui.window.help_text import (
     ABOUT,
+    ABOUT_MODELS,
     ABOUT_PENALTY,
     ABOUT_QUALITY,
     ABOUT_REFINING,
@@ -78,6 +79,12 @@ class Help(Capability):
                 "About &Refining",
                 lambda: dialogs.tell("About refining to the surface", ABOUT_REFINING),
                 at="Help.24",
+            ),
+            Action(
+                "about_models",
+                "About &Models",
+                lambda: dialogs.tell("About models of OpenSim", ABOUT_MODELS),
+                at="Help.26",
             ),
             Action(
                 "about_suggesting",

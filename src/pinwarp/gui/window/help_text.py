@@ -83,6 +83,26 @@ suspect; that of the landmarks is found while they slide on. As they were put on
 small <b>distance</b> to it proves nothing: maps say <i>fitted</i>.</p>
 """
 
+ABOUT_MODELS = """
+<p><b>From a generic model to a subject's.</b> A model of OpenSim (.osim, version 4) is opened with
+<b>File &gt; Open Model…</b>, or dropped onto a view. The Model tab lists its bodies. A click makes
+a body's bone the <b>source</b>; open the subject's as the destination and pair the two as ever.
+Another body can be chosen at any time: what was done on the one before is kept, undo included.</p>
+<p>Muscle points, markers, wraps and frames are drawn on both bones and go along while you place
+landmarks. Muscles run straight from point to point, without wrapping, and dashed where they go on
+to another body. A number beside a frame says by how much the bone <b>turns</b> there.</p>
+<p>The list below the bodies says of each element what becomes of it, how far it moves, and how far
+that may be off (<b>±</b>). <b>!</b> marks what is to be looked at. A click shows it on both bones.
+The box below changes its rule: carried, turned with the bone, or left as it is. Frames keep their
+orientation unless you turn them; compare both where the bone turns by more than 5°.</p>
+<p><b>File &gt; Export Model…</b> shows a dry run first and writes the model, its warped meshes
+beside it, and a report of every element. Bodies without a pair, or without a tick, stay generic.
+The warp's pose is left out: the subject's scan may lie anywhere, in the model's unit (metres).
+Mass, inertia and muscle lengths are kept; the report says so.</p>
+<p><b>Save Study</b> saves the sessions of all bodies and a .pinwarp-model.csv that names them.
+<i>pinwarp model</i> on the command line reads the same file.</p>
+"""
+
 ABOUT_SUGGESTING = """
 <p><b>Suggest All</b> (Ctrl+G) finds the destination's pose, unit and hand from its shape, warps the
 source onto it, and shows a <b>ghost</b> for every landmark that the destination lacks. A ghost is

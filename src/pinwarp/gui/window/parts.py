@@ -174,6 +174,7 @@ class Parts:
             views,
             lambda: session_name(editor.path),
             lambda: (self.warps.result, self.quality.quality),
+            lambda: self.model.rows,
         )
         self.file_warping = FileWarping(editor, tasks)
         self.help = Help(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import platform
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from datetime import datetime
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from pinwarp.core.findings import gravest_first
 from pinwarp.core.folds import Folds
 from pinwarp.core.landmarks import Side
+from pinwarp.core.model_rows import ElementRow, counts
 from pinwarp.core.quality import PenaltyCurve
 from pinwarp.core.surface_distance import SurfaceComparison
 from pinwarp.io.chart import Line, Mark, line_chart
@@ -52,6 +53,7 @@ def report_of(
     made: datetime,
     *,
     quality: Quality | None = None,
+    elements: Sequence[ElementRow] = (),
     told: Callable[[float, str], None] = lambda _share, _stage: None,
 ) -> Report:
     """Collect what is known about a session's warp.
@@ -66,6 +68,8 @@ def report_of(
         When the report is made.
     quality
         What its pairs say about one another, where that is known already.
+    elements
+        What became of the elements of the model's body, where the source is one.
     told
         Told the share that is done and what is going on; may raise to cancel.
 
@@ -92,16 +96,18 @@ def report_of(
         title=title,
         made=f"Made by pinwarp {__version__} on {made:%d %B %Y at %H:%M} "
         f"(Python {platform.python_version()}, numpy {np.__version__})",
-        facts=_facts(session, result),
+        facts=(*_facts(session, result), *_model_fact(elements)),
         findings=(
             *(one.sentence for one in astray),
             *(finding.describe(names, unit) for finding in found),
+            *(f"{row.path}: {row.flag}" for row in elements if row.flag),
         ),
         figures=(
             *_of_pairs(warp, quality),
             *_of_groups(result, unit),
             *_of_surfaces(compared, folds, unit),
             *_of_warp(quality, unit),
+            *_of_model(elements),
         ),
         remarks=(
             (
@@ -122,6 +128,12 @@ def report_of(
                 "Affine part",
                 f"The best affine fit of the pairs{also}, taken apart: it stretches, turns "
                 "and moves. Translation is that of the middle of the source landmarks.",
+            ),
+            (
+                "Model",
+                "What stands on the body, carried by the warp without its pose: how far it moves, "
+                "how far that may be off (the standard deviation of one coordinate), and by how "
+                "much the bone turns there. What is kept has no figures.",
             ),
         ),
         chart="" if quality.curve is None else _chart(quality.curve, session, result),
@@ -148,6 +160,23 @@ def _facts(session: Session, result: WarpResult) -> tuple[tuple[str, str], ...]:
     if result.rms_residual is not None:
         facts.append(("RMS residual", f"{result.rms_residual:.4g} {unit}"))
     return tuple(facts)
+
+
+def _model_fact(elements: Sequence[ElementRow]) -> list[tuple[str, str]]:
+    if not elements:
+        return []
+    found = ", ".join(f"{count} {outcome.value}" for outcome, count in counts(elements).items())
+    return [("Model", f"{elements[0].body}: {found} elements")]
+
+
+def _of_model(elements: Sequence[ElementRow]) -> list[ReportRow]:
+    figures = []
+    for row in elements:
+        item = f"{row.path} ({row.kind})"
+        figures.append(ReportRow("Model", item, "moved", 1e3 * row.moved, "mm"))
+        figures.append(ReportRow("Model", item, "±", 1e3 * row.plus_minus, "mm"))
+        figures.append(ReportRow("Model", item, "turned", row.turned, "°"))
+    return figures
 
 
 def _pairs_text(session: Session) -> str:
