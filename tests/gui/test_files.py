@@ -260,7 +260,7 @@ def held_reading(monkeypatch):
         go.wait(30)
         return read_mesh(path, progress=progress)
 
-    monkeypatch.setattr(session_meshes, "read_mesh", read_later)
+    monkeypatch.setattr(session_meshes, "read_any_mesh", read_later)
     yield go
     go.set()
 
