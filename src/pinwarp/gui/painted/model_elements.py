@@ -100,16 +100,21 @@ def _paint_line(painter: QPainter, line: ElementLine, run: NDArray, is_hidden: b
     if line.is_chosen:
         painter.setPen(QPen(QColor(theme.SELECTED_COLOUR), width + 4.0))
         painter.drawPolyline(polygon)
-    elif not (is_wrap or dashes):
+    elif not is_wrap:
         # A rim, so that it is seen on every bone; wraps are many, and stay in the background.
-        painter.setPen(QPen(QColor(theme.PAPER), width + 1.6))
+        painter.setPen(_pen(theme.PAPER, width + 1.6, width, dashes))
         painter.drawPolyline(polygon)
-    pen = QPen(QColor(name), width + 0.6 * line.is_chosen)
-    if dashes:
-        pen.setDashPattern(dashes)
-    pen.setCapStyle(Qt.PenCapStyle.FlatCap)
-    painter.setPen(pen)
+    painter.setPen(_pen(name, width + 0.6 * line.is_chosen, width, dashes))
     painter.drawPolyline(polygon)
+
+
+def _pen(colour: str, width: float, usual: float, dashes: list[float]) -> QPen:
+    """Return a pen whose dashes are as long as those of the usual width."""
+    pen = QPen(QColor(colour), width)
+    if dashes:
+        pen.setDashPattern([dash * usual / width for dash in dashes])
+    pen.setCapStyle(Qt.PenCapStyle.FlatCap)
+    return pen
 
 
 def _paint_point(
