@@ -51,6 +51,10 @@ def test_twelve_pairs_three_drags_one_disabled_and_all_the_way_back(pelvis):
         assert user.session.landmark(name).source is not None, f"click {number} missed"
         if user.window.parts.ghosts.at(DESTINATION) is not None:
             user.press(Qt.Key.Key_Space, widget=source)
+            if not user.session.landmark(name).is_pair:
+                # The bone hid it: the view has turned, and the second press accepts.
+                user.press(Qt.Key.Key_Space, widget=source)
+                user.press(Qt.Key.Key_Home, Qt.KeyboardModifier.ShiftModifier)
             accepted += 1
         else:
             assert number < 3

@@ -79,6 +79,10 @@ class WindowFrame(QMainWindow):
         self.setWindowIcon(icon("pinwarp"))
         self.resize(SIZE)
         self._was_placed = False
+        self._frame_known = [
+            QTimer(self, singleShot=True, interval=delay, timeout=self.keep_on_screen)
+            for delay in FRAME_KNOWN_MS
+        ]
         self._dress()
 
     def furnish(self, capabilities: Sequence[Capability], actions: Sequence[QAction]) -> None:
@@ -183,8 +187,8 @@ class WindowFrame(QMainWindow):
         if not self._was_placed:
             self._was_placed = True
             # What frame the system draws around it is told some time after.
-            for delay in FRAME_KNOWN_MS:
-                QTimer.singleShot(delay, self, self.keep_on_screen)
+            for timer in self._frame_known:
+                timer.start()
 
     def changeEvent(self, event: QEvent) -> None:
         """Follow the theme."""

@@ -149,8 +149,7 @@ def plan(
 
     Examples
     --------
-    >>> from pinwarp.io.landmark_files import located
-    from pinwarp.io.manifest import Subject
+    >>> from pinwarp.io.manifest import Subject
     >>> from pinwarp.io.samples import sample_session
     >>> from pinwarp.session.keeping.files import read_session
     >>> anna = Subject("anna", 2, Path("/study/anna.csv"), penalty=0.5)
