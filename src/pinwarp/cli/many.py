@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 
 from pinwarp.cli.telling import INTERRUPTED, progress_bar, tell_error, tell_notes
-from pinwarp.session.study import batch as batches
+from pinwarp.session.study import running
 from pinwarp.session.study.cluster import runner_of
 from pinwarp.session.study.workers import Runner, cores
 
@@ -36,7 +36,7 @@ Again = Annotated[bool, typer.Option("--force", help="Do subjects again that hav
 
 
 def do_all(
-    run: Callable[[Runner, batches.Told], batches.Tally],
+    run: Callable[[Runner, running.Told], running.Tally],
     total: int,
     out: Path,
     jobs: int | None,
@@ -63,16 +63,16 @@ def do_all(
     with progress_bar() as progress, _stopped_by_signals() as stop:
         bar = progress.add_task("Warping", total=total)
 
-        def told(task: batches.Job, status: str, words: str) -> None:
+        def told(task: running.Job, status: str, words: str) -> None:
             progress.advance(bar)
-            if status == batches.FAILED:
+            if status == running.FAILED:
                 tell_error(f"{task.subject.name}: {words}")
 
         runner = runner_of(jobs or cores(), scheduler, stop, lambda words: tell_notes([words]))
         tally = run(runner, told)
     typer.echo(
         f"{tally.done} done, {tally.unchanged} unchanged, {tally.failed} failed "
-        f"of {tally.total}: see {out / batches.SUMMARY}"
+        f"of {tally.total}: see {out / running.SUMMARY}"
     )
     if tally.is_interrupted:
         why = tally.ended or "Stopped."

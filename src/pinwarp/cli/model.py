@@ -24,8 +24,8 @@ from pinwarp.session.model.overview import overview
 from pinwarp.session.model.study import ModelStudy, read_study, study_of
 from pinwarp.session.model.warped import WarpedModel, warped_model
 from pinwarp.session.model.writing import outputs_of, write_model
-from pinwarp.session.study.batch import run_all
 from pinwarp.session.study.model_cohort import MODELS, plan_models
+from pinwarp.session.study.running import run_all
 from pinwarp.session.study.scheduler import address_of
 from pinwarp.version import __version__
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pinwarp.core.errors import FileFormatError, PinwarpError, words_of
+from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Side
 from pinwarp.core.model_rows import Outcome
 from pinwarp.core.words import counted
@@ -24,7 +24,14 @@ from pinwarp.session.model.warped import WarpedModel, warped_model
 from pinwarp.session.model.writing import write_model
 from pinwarp.session.outputs.replacing import refuse_to_replace
 from pinwarp.session.session import Session, to_record
-from pinwarp.session.study.batch import DONE, FAILED, SUMMARY, Kind
+from pinwarp.session.study.running import (
+    DONE,
+    FAILED,
+    SUMMARY,
+    Kind,
+    failed_row,
+    why_it_failed,
+)
 from pinwarp.session.study.subject import content_hash, groups_told, places_of, with_destinations
 from pinwarp.version import __version__
 
@@ -159,13 +166,8 @@ def warp_model_of(task: ModelTask) -> ModelOutcome:
             (found[Outcome.WARPED], found[Outcome.KEPT], found[Outcome.FLAGGED]),
             (*notes, *warped.notes),
         )
-    except (PinwarpError, OSError) as error:
-        words = words_of(error)
-    except MemoryError:
-        words = "There is too little memory for it. Run fewer at once."
     except Exception as error:  # a fault of ours in one subject must not end the night's batch
-        words = f"Unexpectedly, {type(error).__name__}: {error}"
-    return ModelOutcome("", time.perf_counter() - start, error=words)
+        return ModelOutcome("", time.perf_counter() - start, error=why_it_failed(error))
 
 
 def _warped(task: ModelTask) -> tuple[WarpedModel, tuple[str, ...]]:
@@ -258,7 +260,7 @@ def _row(task: ModelTask, result: ModelOutcome | Exception) -> SummaryRow:
     """Return a row of the table."""
     name = task.subject.name
     if isinstance(result, Exception):
-        return {"name": name, "status": FAILED, "error": words_of(result) or repr(result)}
+        return failed_row(name, result)
     row = {"name": name, "seconds": f"{result.seconds:.3f}", "made_from": result.made_from}
     if result.error:
         return row | {"status": FAILED, "error": result.error}

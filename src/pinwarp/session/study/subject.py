@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import astuple, dataclass, replace
 from pathlib import Path
 
-from pinwarp.core.errors import FileFormatError, PinwarpError, RangeError, words_of
+from pinwarp.core.errors import FileFormatError, PinwarpError, RangeError
 from pinwarp.core.landmarks import Landmark, Role, Side
 from pinwarp.core.names import look_alike_notes
 from pinwarp.core.surface_distance import SurfaceIndex
@@ -34,6 +34,7 @@ from pinwarp.session.study.first_pass import (
     earlier_pass,
     first_passed,
 )
+from pinwarp.session.study.running import why_it_failed
 from pinwarp.session.suggesting import METHOD as GUESS_METHOD
 from pinwarp.session.suggesting import missing_of
 from pinwarp.session.warp.refining import RefinementOptions, refined_session
@@ -130,13 +131,8 @@ def warp_subject(task: Task) -> Outcome:
     except DoubtfulError as error:
         seconds = time.perf_counter() - start
         return Outcome("", seconds, error=str(error), first_pass=error.first_pass)
-    except (PinwarpError, OSError) as error:
-        words = words_of(error)
-    except MemoryError:
-        words = "There is too little memory for it. Run fewer at once."
     except Exception as error:  # a fault of ours in one subject must not end the night's batch
-        words = f"Unexpectedly, {type(error).__name__}: {error}"
-    return Outcome("", time.perf_counter() - start, error=words)
+        return Outcome("", time.perf_counter() - start, error=why_it_failed(error))
 
 
 def _warp(task: Task) -> tuple[Check, tuple[str, ...], FirstPass | None]:
