@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 from pinwarp.core.components import Components
 from pinwarp.core.errors import FileFormatError
@@ -16,6 +16,21 @@ from pinwarp.io.csv_cells import as_sentence, formula_unquoted, shortened
 from pinwarp.io.csv_text import Row, rows_of
 from pinwarp.io.setting_keys import penalty_of
 from pinwarp.io.text import lines_of, read_text, refuse_binary
+
+
+class Named(Protocol):
+    """A subject, whatever else is known of it."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+
+    @property
+    def line(self) -> int:
+        """The line of the manifest, counted from 1."""
+
+
+S = TypeVar("S", bound=Named)
 
 REQUIRED = ("name", "destination_landmarks")
 OPTIONAL = ("destination_mesh", "penalty", "components")
@@ -107,8 +122,35 @@ def read_manifest(path: str | Path, *, suggested: bool = False) -> Manifest:
     ('anna', 'anna.csv', 2.5)
     """
     place = Path(os.path.abspath(path))
-    text = read_text(place, "manifest")
-    refuse_binary(place, text)
+    rows, separator = manifest_rows(place)
+    required = REQUIRED[:1] if suggested else REQUIRED
+    columns = _columns(place, rows, required)
+    subjects = subjects_of(
+        place,
+        rows[1:],
+        lambda row: _subject(row, columns, separator, place, required),
+        "the files of one would replace the other's",
+    )
+    unused = tuple(column for column in columns if column and column not in _COLUMNS)
+    return Manifest(place, subjects, unused)
+
+
+def manifest_rows(path: Path) -> tuple[list[Row], str]:
+    """Read the rows of a manifest, that of its columns first; remarks and blanks are no rows.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    rows : list of Row
+    separator : str
+        What is between the cells.
+    """
+    text = read_text(path, "manifest")
+    refuse_binary(path, text)
     lines = lines_of(text)
     filled = [line for line in lines if line.strip() and not line.startswith("#")]
     # No column's name has any of these in it.
@@ -118,27 +160,47 @@ def read_manifest(path: str | Path, *, suggested: bool = False) -> Manifest:
         for row in rows_of(lines, separator)
         if not row.is_blank and not row.text.startswith("#")
     ]
-    required = REQUIRED[:1] if suggested else REQUIRED
-    columns = _columns(place, rows, required)
-    subjects: dict[str, Subject] = {}
-    for row in rows[1:]:
+    return rows, separator
+
+
+def subjects_of(
+    path: Path, rows: Sequence[Row], subject_of: Callable[[Row], S], harm: str
+) -> tuple[S, ...]:
+    """Make a subject of each row, every one with a name of its own.
+
+    Parameters
+    ----------
+    path
+        The manifest, for messages.
+    rows
+        Without that of the columns.
+    subject_of
+        Makes one, or raises a ValueError where the row has no name.
+    harm
+        What two subjects of one name would do to one another.
+
+    Raises
+    ------
+    FileFormatError
+        When a row has no name that is its own, or there is none; the message names the line.
+    """
+    subjects: dict[str, S] = {}
+    for row in rows:
         try:
-            subject = _subject(row, columns, separator, place, required)
+            subject = subject_of(row)
             # Some systems take two names for one whose letters are composed in other ways.
             look = visible(subject.name).casefold()
             if earlier := subjects.get(look):
                 raise ValueError(
                     f"the name {shortened(subject.name)} was used in line {earlier.line}"
-                    f"{_unlike(subject.name, earlier.name)}: "
-                    "the files of one would replace the other's"
+                    f"{_unlike(subject.name, earlier.name)}: {harm}"
                 )
         except ValueError as error:
-            raise FileFormatError(place, as_sentence(str(error)), row.line) from None
+            raise FileFormatError(path, as_sentence(str(error)), row.line) from None
         subjects[look] = subject
     if not subjects:
-        raise FileFormatError(place, "There is no subject in it: write one row for each.")
-    unused = tuple(column for column in columns if column and column not in _COLUMNS)
-    return Manifest(place, tuple(subjects.values()), unused)
+        raise FileFormatError(path, "There is no subject in it: write one row for each.")
+    return tuple(subjects.values())
 
 
 def _unlike(name: str, other: str) -> str:

@@ -8,11 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError
-from pinwarp.core.names import visible
-from pinwarp.io.csv_cells import as_sentence, formula_unquoted, shortened
-from pinwarp.io.csv_text import Row, rows_of
-from pinwarp.io.manifest import checked_name
-from pinwarp.io.text import lines_of, read_text, refuse_binary
+from pinwarp.io.csv_cells import formula_unquoted, shortened
+from pinwarp.io.csv_text import Row
+from pinwarp.io.manifest import checked_name, manifest_rows, subjects_of
 
 MESH = "_mesh"
 """What the column of a body's scan ends in, after the name of the body."""
@@ -115,34 +113,16 @@ def read_model_manifest(path: str | Path, bodies: Sequence[str]) -> ModelManifes
     [('thigh', 'anna_thigh.csv')]
     """
     place = Path(os.path.abspath(path))
-    text = read_text(place, "manifest")
-    refuse_binary(place, text)
-    lines = lines_of(text)
-    filled = [line for line in lines if line.strip() and not line.startswith("#")]
-    separator = max(",;\t", key=filled[0].count) if filled else ","
-    rows = [
-        row
-        for row in rows_of(lines, separator)
-        if not row.is_blank and not row.text.startswith("#")
-    ]
+    rows, _ = manifest_rows(place)
     columns = _columns(place, rows, bodies)
-    subjects: dict[str, ModelSubject] = {}
-    for row in rows[1:]:
-        try:
-            subject = _subject(row, columns, place.parent)
-            look = visible(subject.name).casefold()
-            if earlier := subjects.get(look):
-                raise ValueError(
-                    f"the name {shortened(subject.name)} was used in line {earlier.line}: the "
-                    "model of one would replace the other's"
-                )
-        except ValueError as error:
-            raise FileFormatError(place, as_sentence(str(error)), row.line) from None
-        subjects[look] = subject
-    if not subjects:
-        raise FileFormatError(place, "There is no subject in it: write one row for each.")
+    subjects = subjects_of(
+        place,
+        rows[1:],
+        lambda row: _subject(row, columns, place.parent),
+        "the model of one would replace the other's",
+    )
     found = tuple(body for body in bodies if body in columns)
-    return ModelManifest(place, tuple(subjects.values()), found)
+    return ModelManifest(place, subjects, found)
 
 
 def _columns(path: Path, rows: Sequence[Row], bodies: Sequence[str]) -> tuple[str, ...]:
