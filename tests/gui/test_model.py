@@ -22,7 +22,7 @@ from pinwarp.gui.files.lost_work_dialog import LostAnswer
 from pinwarp.gui.model import rule_tree
 from pinwarp.gui.model.body_tree import NAME, STATE
 from pinwarp.gui.model.model_dialogs import DryRunDialog
-from pinwarp.gui.scene.drawables import ModelElements
+from pinwarp.gui.scene.model_drawables import ModelElements
 from pinwarp.io.meshes import write_mesh
 from pinwarp.io.osim.bone import bone_of
 from pinwarp.io.osim.reading import read_model

@@ -21,11 +21,11 @@ from pinwarp.gui.scene.drawables import (
     Dots,
     Legend,
     Markers,
-    ModelElements,
     Paths,
     ScaleBar,
     Slides,
 )
+from pinwarp.gui.scene.model_drawables import ModelElements
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.style import theme
 from pinwarp.gui.tasks.stepped_job import Steps

@@ -8,7 +8,7 @@ import numpy as np
 
 from pinwarp.core.landmarks import as_position
 from pinwarp.core.model_rows import ElementRow
-from pinwarp.gui.scene.drawables import ElementLine, ModelElements
+from pinwarp.gui.scene.model_drawables import ElementLine, ModelElements
 from pinwarp.session.model.elements import Elements, OutlineKind, muscle_of
 
 # Degrees: a smaller turn of a frame is not written beside it.

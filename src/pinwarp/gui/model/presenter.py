@@ -23,7 +23,8 @@ from pinwarp.gui.model import words
 from pinwarp.gui.model.opened import OpenedModel
 from pinwarp.gui.model.panel import ModelPanel
 from pinwarp.gui.model.pictures import picture_of
-from pinwarp.gui.scene.drawables import Drawable, ModelElements
+from pinwarp.gui.scene.drawables import Drawable
+from pinwarp.gui.scene.model_drawables import ModelElements
 from pinwarp.gui.tasks.file_tasks import MODEL_FILES, FileTasks
 from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.gui.views.controls import ViewControls

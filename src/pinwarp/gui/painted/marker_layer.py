@@ -47,7 +47,6 @@ from pinwarp.gui.scene.drawables import (
     Hint,
     Marker,
     Markers,
-    ModelElements,
     OtherGhosts,
     Paths,
     ScaleBar,
@@ -55,6 +54,7 @@ from pinwarp.gui.scene.drawables import (
     Star,
     ToolWords,
 )
+from pinwarp.gui.scene.model_drawables import ModelElements
 from pinwarp.gui.scene.projection import Projection
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.style import theme

@@ -11,7 +11,7 @@ from qtpy.QtGui import QColor, QPainter, QPen, QPolygonF
 
 from pinwarp.gui.painted.hidden import HiddenPlaces, runs
 from pinwarp.gui.painted.markers import FAINT
-from pinwarp.gui.scene.drawables import ElementLine, ModelElements
+from pinwarp.gui.scene.model_drawables import ElementLine, ModelElements
 from pinwarp.gui.scene.projection import Projection
 from pinwarp.gui.style import theme
 from pinwarp.session.model.elements import OutlineKind

@@ -197,9 +197,8 @@ class PenaltyPanel(QWidget):
             return
         self._result = result
         self._factor = result.factor if result is not None else None
-        has_modes = self._factor is not None and len(self._factor.poles) > 0
-        self.slider.setEnabled(has_modes)
-        self.value.setEnabled(has_modes)
+        self.slider.setEnabled(self._penalty_acts)
+        self.value.setEnabled(self._penalty_acts)
         self.figures.show_flexibility(result.flexibility if result is not None else None)
         self._show_words()
         self.planar.setVisible(is_nearly_planar(result) or self._session.settings.planar)
@@ -207,7 +206,7 @@ class PenaltyPanel(QWidget):
         opynsim = self._session.settings.convention is PenaltyConvention.OPYNSIM
         poles = self._factor.poles.tolist() if self._factor is not None and opynsim else []
         self.slider.set_poles(tuple(self._share_of(pole) for pole in poles))
-        if not has_modes:
+        if not self._penalty_acts:
             # What is drawn was of pairs that are gone.
             self._quality = None
             self._show_curve()
@@ -219,6 +218,11 @@ class PenaltyPanel(QWidget):
         self._show_curve()
         self._show_words()
         self._show_present()
+
+    @property
+    def _penalty_acts(self) -> bool:
+        """Whether there is anything beyond the affine fit that a penalty could smooth."""
+        return self._factor is not None and len(self._factor.poles) > 0
 
     @property
     def _without_suggestion(self) -> str:
@@ -251,8 +255,8 @@ class PenaltyPanel(QWidget):
         advice = penalty_advice(curve, self._session.unit) if curve is not None else ""
         if curve is not None and self._session.settings.convention is PenaltyConvention.OPYNSIM:
             advice = ""
-        has_modes = self._factor is not None and len(self._factor.poles) > 0
-        if self._result is not None and self._result.spline is not None and not has_modes:
+        is_solved = self._result is not None and self._result.spline is not None
+        if is_solved and not self._penalty_acts:
             advice = _TOO_FEW
         self.warning.show_words(warnings_of(self._session, self._result), advice)
 
@@ -282,8 +286,7 @@ class PenaltyPanel(QWidget):
         unit = unit_on(session, Side.DESTINATION)
         left_out = figures[0] if figures else self._left_out_alone()
         self.figures.show_left_out(left_out, unit)
-        has_place = self._factor is not None and len(self._factor.poles) > 0
-        self.plot.show_present(share if has_place else None, figures)
+        self.plot.show_present(share if self._penalty_acts else None, figures)
         self._show_suggestion()
 
     def _left_out_alone(self) -> float:
@@ -311,7 +314,7 @@ class PenaltyPanel(QWidget):
     # The slider's scale is flexibility: it has no unit and suits every set of landmarks
 
     def _share_of(self, penalty: float) -> float:
-        if self._factor is None or not len(self._factor.poles):
+        if self._factor is None or not self._penalty_acts:
             return 0.0
         return 1.0 - self._factor.flexibility(penalty)
 

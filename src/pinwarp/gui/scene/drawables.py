@@ -16,7 +16,7 @@ from pinwarp.core.folds import Folds
 from pinwarp.core.landmarks import LandmarkState, Position
 from pinwarp.core.maps import MapKind, Range, Suggestion
 from pinwarp.core.mesh import Mesh
-from pinwarp.session.model.elements import OutlineKind
+from pinwarp.gui.scene.model_drawables import ModelElements
 from pinwarp.session.warp.ghost import Ghost
 
 # What is rendered
@@ -293,48 +293,6 @@ class Slides:
     starts: NDArray[np.float64]
     ends: NDArray[np.float64]
     colours: NDArray[np.int64]
-
-
-@dataclass(frozen=True, eq=False)
-class ElementLine:
-    """A line of something that stands on a body of a model.
-
-    Parameters
-    ----------
-    places
-        (k, 3) from end to end.
-    kind
-        What it is part of.
-    is_chosen
-        Whether that is chosen in the list.
-    """
-
-    places: NDArray[np.float64]
-    kind: OutlineKind
-    is_chosen: bool = False
-
-
-@dataclass(frozen=True, eq=False)
-class ModelElements:
-    """What stands on a body of a model, as passengers that the mouse does not see.
-
-    Parameters
-    ----------
-    points
-        (n, 3) places of muscles' path points, markers and stations.
-    is_of_muscle, is_chosen
-        (n,) whether a muscle runs through it, and whether it is chosen in the list.
-    lines
-        Muscles, wraps and the axes of frames.
-    labels
-        Words and where they stand.
-    """
-
-    points: NDArray[np.float64]
-    is_of_muscle: NDArray[np.bool_]
-    is_chosen: NDArray[np.bool_]
-    lines: tuple[ElementLine, ...]
-    labels: tuple[tuple[str, Position], ...] = ()
 
 
 @dataclass(frozen=True)

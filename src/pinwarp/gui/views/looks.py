@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
-from qtpy.QtCore import QEvent, QObject, QSettings, Qt
+from qtpy.QtCore import QObject, QSettings, Qt, SignalInstance
 from qtpy.QtWidgets import QSlider
 
 from pinwarp.core.landmarks import Side
@@ -34,12 +34,21 @@ class Looks(Capability):
         Its view state is what the actions change.
     views
         One per side.
+    theme_changed
+        A signal of the window's.
     parent
         The window.
     """
 
-    def __init__(self, editor: Editor, views: Mapping[Side, Canvas], parent: QObject) -> None:
+    def __init__(
+        self,
+        editor: Editor,
+        views: Mapping[Side, Canvas],
+        theme_changed: SignalInstance,
+        parent: QObject,
+    ) -> None:
         self._editor = editor
+        self._theme_changed = theme_changed
         self._views = views
         self.section_slider = _section_slider()
         self.actions = (
@@ -91,7 +100,7 @@ class Looks(Capability):
             ),
         )
         self.section_slider.valueChanged.connect(self._on_section_moved)
-        self._theme = _ThemeWatch(parent, self._on_view)
+        theme_changed.connect(self._on_view)
         editor.view_changed.connect(self._on_view)
         self._on_view()
 
@@ -119,7 +128,7 @@ class Looks(Capability):
     def shut_down(self) -> None:
         """Let go of the editor and the theme."""
         self._editor.view_changed.disconnect(self._on_view)
-        self._theme.stop()
+        self._theme_changed.disconnect(self._on_view)
 
     def _on_view(self, _changed: object = None) -> None:
         view = self._editor.view
@@ -143,25 +152,6 @@ class Looks(Capability):
     def _on_section_moved(self, value: int) -> None:
         if self._editor.view.section is not None:
             self._editor.look(section=value / self.section_slider.maximum())
-
-
-class _ThemeWatch(QObject):
-    """Calls when the application gets another theme."""
-
-    def __init__(self, parent: QObject, changed: Callable[[], None]) -> None:
-        super().__init__(parent)
-        self._changed = changed
-        parent.installEventFilter(self)
-
-    def stop(self) -> None:
-        """Watch no longer."""
-        self.parent().removeEventFilter(self)
-
-    def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
-        """Look at what reaches the window."""
-        if event.type() == QEvent.Type.ApplicationPaletteChange:
-            self._changed()
-        return False
 
 
 def _section_slider() -> QSlider:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
-from qtpy.QtCore import QByteArray, QEvent, QSettings, QSize, Qt, QTimer
+from qtpy.QtCore import QByteArray, QEvent, QSettings, QSize, Qt, QTimer, Signal
 from qtpy.QtGui import QAction, QShowEvent
 from qtpy.QtWidgets import (
     QApplication,
@@ -61,6 +61,8 @@ class WindowFrame(QMainWindow):
     state_folder
         Where the log of what went wrong is kept; None keeps none.
     """
+
+    theme_changed = Signal()
 
     def __init__(self, state_folder: Path | None) -> None:
         super().__init__()
@@ -195,6 +197,7 @@ class WindowFrame(QMainWindow):
         super().changeEvent(event)
         if event.type() == QEvent.Type.ApplicationPaletteChange:
             self._dress()
+            self.theme_changed.emit()
 
     def _dress(self) -> None:
         sheet = window_sheet(QApplication.palette())

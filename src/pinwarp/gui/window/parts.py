@@ -90,7 +90,7 @@ class Parts:
         self.quality = QualityPresenter(self.warps)
         self.shown_session = ShownSession(editor, scenes, self.warps, self.quality)
         self.views = ViewControls(editor, views, scenes, say, frame)
-        self.looks = Looks(editor, views, frame)
+        self.looks = Looks(editor, views, frame.theme_changed, frame)
         self.ghosts = Ghosts(editor, self.warps, surfaces)
         self.hand = Hand(editor, views, self.ghosts, self.views)
         self.bones = BoneEdits(editor, say)
