@@ -196,3 +196,19 @@ def test_the_background_of_the_views_follows_the_theme_or_the_menu(sample, theme
     assert greatest_contrast(caption) >= READABLE
     sample.trigger("background_theme")
     assert (brightness() < 0.1) == is_dark
+
+
+def test_an_open_window_follows_another_theme(user, qapp):
+    user.open_sample()
+    canvas = user.window.viewports[Side.DESTINATION]
+    before, light = qapp.palette(), user.window.styleSheet()
+    try:
+        qapp.setPalette(dark_palette())
+        user.settle()
+        assert user.window.styleSheet() != light
+        assert np.median(luminances(pixels(canvas)[60:90, 5:60])) < 0.1
+    finally:
+        qapp.setPalette(before)
+    user.settle()
+    assert user.window.styleSheet() == light
+    assert np.median(luminances(pixels(canvas)[60:90, 5:60])) > 0.5

@@ -195,14 +195,15 @@ class WindowFrame(QMainWindow):
     def changeEvent(self, event: QEvent) -> None:
         """Follow the theme."""
         super().changeEvent(event)
-        if event.type() == QEvent.Type.ApplicationPaletteChange:
+        if event.type() == QEvent.Type.PaletteChange:
             self._dress()
-            self.theme_changed.emit()
 
     def _dress(self) -> None:
         sheet = window_sheet(QApplication.palette())
+        # A sheet changes palettes, too.
         if sheet != self.styleSheet():
             self.setStyleSheet(sheet)
+            self.theme_changed.emit()
 
     def keep_on_screen(self) -> None:
         """Make the window small enough for the screen, its frame counted, and move it onto it."""
