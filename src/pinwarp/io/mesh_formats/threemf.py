@@ -158,6 +158,7 @@ def read_3mf(data: bytes, report: Report) -> Surface:
     except (zipfile.BadZipFile, zlib.error, EOFError, ValueError, OSError) as error:
         raise BrokenMeshError(_DAMAGED) from error
     except (NotImplementedError, RuntimeError) as error:
+        # What zipfile raises over a way of packing that it does not know, and over a password.
         raise BrokenMeshError(
             "The file is encrypted, or packed in a way that cannot be read. Export it again."
         ) from error
