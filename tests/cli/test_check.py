@@ -18,6 +18,7 @@ from pinwarp.session.session import Session
 
 KEYS = {
     "pinwarp": str,
+    "session": str,
     "unit": str,
     "warping_penalty": float,
     "penalty_convention": str,

@@ -17,6 +17,7 @@ from pinwarp.gui.exporting.offscreen import Offscreen
 from pinwarp.gui.exporting.picture_dialogs import AnimationDialog, PictureDialog
 from pinwarp.gui.scene.drawables import Arrows, FoldedSurface, GridLines, Overlay
 from pinwarp.session import edits
+from pinwarp.session.warp.provenance import session_hash
 
 DESTINATION = Side.DESTINATION
 
@@ -83,6 +84,8 @@ def test_a_picture_of_the_views_own_size_is_what_the_window_shows(sample, tmp_pa
     assert np.abs(found - shown).mean() < 1
     message = sample.window.statusBar().currentMessage()
     assert f"{view.width()} × {view.height()} pixels, the full warp" in message
+    with Image.open(path) as told:
+        assert session_hash(sample.session) in told.text["Description"]
 
 
 def test_a_large_picture_is_rendered_and_not_enlarged(sample, tmp_path):

@@ -18,6 +18,7 @@ from pinwarp.io.setting_keys import plain_settings
 from pinwarp.session.judging import check as checking
 from pinwarp.session.keeping.files import read_session
 from pinwarp.session.session import Session
+from pinwarp.session.warp.provenance import session_hash
 from pinwarp.session.warp.setting_words import settings_in_words
 from pinwarp.version import __version__
 
@@ -59,6 +60,7 @@ def check(
 def _about(session: Session) -> dict[str, Any]:
     return {
         "pinwarp": __version__,
+        "session": session_hash(session),
         "unit": session.unit,
         **plain_settings(session.settings),
     }
@@ -107,6 +109,7 @@ def _of_groups(checked: checking.Check, decimals: int) -> Table:
 def _figures(session: Session, checked: checking.Check) -> list[tuple[str, str]]:
     unit = session.unit
     figures = [
+        ("Session", session_hash(session)),
         *settings_in_words(session.settings, unit),
         ("Suggested penalty", _length(checked.suggested_penalty, unit, "none")),
         *_flatness(checked, unit),

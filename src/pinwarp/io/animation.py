@@ -27,6 +27,7 @@ def write_gif(
     frames: Sequence[Frame],
     seconds: float,
     *,
+    remarks: Sequence[str] = (),
     progress: Callable[[float, str], None] = _silent,
 ) -> None:
     """Write frames as a GIF that repeats for ever, all of it or nothing.
@@ -39,6 +40,8 @@ def write_gif(
         At least one, all (height, width, 3) RGB and of one size.
     seconds
         How long they take together; GIF counts in hundredths.
+    remarks
+        A line each for people, such as what made it; it becomes the file's comment.
     progress
         Told the share that is done and what is going on; may raise to cancel.
 
@@ -74,6 +77,7 @@ def write_gif(
             append_images=pictures[1:],
             duration=durations(len(pictures), seconds),
             loop=0,
+            comment="\n".join(remarks).encode(),
         )
 
 

@@ -89,6 +89,8 @@ class Coefficients:
         What the coordinates of a mesh are multiplied by after reading.
     version
         The pinwarp that wrote it.
+    session
+        The hash of the session that it is of; empty where it is of none.
     """
 
     spline: Spline
@@ -102,6 +104,7 @@ class Coefficients:
     source_scaled: float = 1.0
     destination_scaled: float = 1.0
     version: str = ""
+    session: str = ""
 
 
 def write_coefficients(path: str | Path, coefficients: Coefficients) -> None:
@@ -192,6 +195,7 @@ def _fields(coefficients: Coefficients) -> dict[str, Any]:
         "format": FORMAT,
         "format_version": FORMAT_VERSION,
         "pinwarp": coefficients.version,
+        "session": coefficients.session,
         "equation": EQUATION,
         "unit": coefficients.unit,
         **plain_settings(coefficients.settings),
@@ -273,6 +277,8 @@ def _coefficients(fields: Mapping[str, Any]) -> Coefficients:
         source_scaled=float(fields["source_scaled"]),
         destination_scaled=float(fields["destination_scaled"]),
         version=texts["pinwarp"],
+        # Older files do not say it.
+        session=str(fields.get("session", "")),
     )
 
 

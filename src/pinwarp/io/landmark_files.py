@@ -285,6 +285,7 @@ def write_landmarks(
     unit: str = "",
     known: LandmarkFormat | None = None,
     groups: Iterable[ReadGroup] = (),
+    remarks: tuple[str, ...] = (),
 ) -> tuple[str, ...]:
     r"""Write landmarks in the format of the file's suffix, all of them or nothing.
 
@@ -303,6 +304,8 @@ def write_landmarks(
         The format; without it, that of the file's suffix.
     groups
         The curves and patches that some of them are points of.
+    remarks
+        A line each for people, such as what made the file; formats with comments have them.
 
     Returns
     -------
@@ -336,7 +339,7 @@ def write_landmarks(
             f"or choose a format of pairs ({both}).",
         )
     title = Path(path).name.partition(".")[0]
-    outgoing = Outgoing(tuple(landmarks), side, unit, title, tuple(groups))
+    outgoing = Outgoing(tuple(landmarks), side, unit, title, tuple(groups), remarks)
     kept = tuple(x for x in outgoing.groups if (holds.curves if x.is_curve else holds.patches))
     try:
         written = known.text_of(replace(outgoing, groups=kept))

@@ -72,6 +72,8 @@ class Report:
         A few words below the title of a section.
     chart
         An ``<svg>`` of the penalty curve, or nothing.
+    methods
+        What a paper says about it, a paragraph each.
     """
 
     title: str
@@ -81,6 +83,7 @@ class Report:
     figures: tuple[ReportRow, ...]
     remarks: tuple[tuple[str, str], ...] = ()
     chart: str = ""
+    methods: tuple[str, ...] = ()
 
 
 def write_report(path: str | Path, report: Report, pictures: Sequence[Picture] = ()) -> None:
@@ -142,6 +145,10 @@ def write_report(path: str | Path, report: Report, pictures: Sequence[Picture] =
         if section in remarks:
             ET.SubElement(body, "p", {"class": "quiet"}).text = remarks[section]
         _add_table(body, [figure for figure in report.figures if figure.section == section])
+    if report.methods:
+        _heading(body, "Methods")
+        for paragraph in report.methods:
+            ET.SubElement(body, "p").text = paragraph
     text = ET.tostring(html, encoding="unicode", method="html")
     write_atomically(path, "<!DOCTYPE html>\n" + _printable(text) + "\n")
 

@@ -108,6 +108,24 @@ def write_session(path: str | Path, record: SessionRecord, *, relative_meshes: b
                 f"Shorten it to {LONGEST_CELL:,} characters."
             )
     folder = Path(os.path.abspath(path)).parent if relative_meshes else None
+    write_atomically(path, session_text(record, folder))
+
+
+def session_text(record: SessionRecord, folder: Path | None = None) -> str:
+    r"""Return all that a session file says.
+
+    Parameters
+    ----------
+    record
+        What it holds.
+    folder
+        Where it will be: meshes are named as seen from there; without one they are absolute.
+
+    Examples
+    --------
+    >>> session_text(SessionRecord()).splitlines()[0]
+    '# pinwarp-session: 1'
+    """
     refined = record.refinement
     is_plain = refined is None and not record.groups
     header = [("pinwarp-session", str(PLAIN if is_plain else VERSION))]
@@ -136,7 +154,7 @@ def write_session(path: str | Path, record: SessionRecord, *, relative_meshes: b
     entries.append(f"# landmarks: {len(record.landmarks)}")
     lines = [header_line(entry) for entry in entries]
     lines += table_lines(record.landmarks, fitted, group_rows(record.groups, record.slid))
-    write_atomically(path, "".join(lines))
+    return "".join(lines)
 
 
 def read_session(path: str | Path) -> SessionRecord:

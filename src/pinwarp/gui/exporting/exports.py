@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from pinwarp.core.landmarks import Landmark, Side
@@ -26,6 +27,7 @@ from pinwarp.session.outputs.exports import (
     warped_passengers,
 )
 from pinwarp.session.outputs.script import script_of
+from pinwarp.session.warp.provenance import provenance
 from pinwarp.session.warp.refined import warp_in_words
 from pinwarp.session.warp.slid_words import not_sliding_note, semilandmarks_in_words
 from pinwarp.session.warp.solved import SolvedWarp, solved
@@ -157,7 +159,9 @@ class Exports(Capability):
 
         def write() -> None:
             nonlocal notes
-            notes = write_landmarks(path, landmarks(), side, unit=self._editor.committed.unit)
+            session = self._editor.committed
+            made = provenance(session)
+            notes = write_landmarks(path, landmarks(), side, unit=session.unit, remarks=made)
 
         if self._tasks.write(write, path):
             done = f"Exported {path.name}" + (f": {what}" if what else "")
@@ -239,7 +243,7 @@ class Exports(Capability):
                     progress=lambda share, stage: progress(0.1 + 0.7 * share, stage),
                 )
             progress(0.8, "writing")
-            write_mesh(path, mesh, data)
+            write_mesh(path, mesh, replace(data, remarks=provenance(session)))
             return warp
 
         self._tasks.run(

@@ -20,6 +20,7 @@ from pinwarp.gui.views.canvas import Canvas
 from pinwarp.io.animation import Frame, write_gif
 from pinwarp.io.atomic import atomic_path
 from pinwarp.session.editor import Editor
+from pinwarp.session.warp.provenance import provenance
 from pinwarp.session.warp.refined import warp_in_words
 
 
@@ -96,11 +97,12 @@ class PictureExport(Capability):
         if path is None:
             return
         what = self._shown(order.sides)
+        made = provenance(self._editor.committed)
 
         def rendered(image: QImage) -> None:
             self._tasks.run(
                 f"Exporting {path.name}",
-                lambda _progress: _write_png(path, image),
+                lambda _progress: _write_png(path, image, made),
                 lambda _nothing: self._tasks.said.emit(
                     f"Exported {path.name}: {order.width} × {order.height} pixels{what}"
                 ),
@@ -116,13 +118,14 @@ class PictureExport(Capability):
             return
         title, view = f"Exporting {path.name}", self._views[Side.DESTINATION]
         session = self._editor.committed
+        made = provenance(session)
         what = self._shown((Side.DESTINATION,))
         if order.motion is Motion.BLEND:
             what = f", to {warp_in_words(session)}"
 
         def rendered(frames: list[Frame]) -> None:
             def write(progress: Progress) -> None:
-                write_gif(path, frames, order.seconds, progress=progress)
+                write_gif(path, frames, order.seconds, remarks=made, progress=progress)
 
             self._tasks.run(
                 title,
@@ -157,7 +160,9 @@ class PictureExport(Capability):
         return f", {warp_in_words(session)}" if seen else ""
 
 
-def _write_png(path: Path, image: QImage) -> None:
+def _write_png(path: Path, image: QImage, made: Sequence[str]) -> None:
+    # The word of the PNG specification for what is told in it.
+    image.setText("Description", "\n".join(made))
     with atomic_path(path) as temporary:
         if not image.save(str(temporary), "PNG"):
             raise OSError(f"{path} could not be written. Is the disk full?")

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+
+from qtpy.QtGui import QGuiApplication
+from qtpy.QtWidgets import QMessageBox
 
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
@@ -17,6 +21,8 @@ from pinwarp.gui.window.help_text import (
     ABOUT_REFINING,
     ABOUT_SEMILANDMARKS,
     ABOUT_SUGGESTING,
+    BIBTEX,
+    CITING,
 )
 
 
@@ -93,6 +99,13 @@ class Help(Capability):
                 at="Help.25",
             ),
             Action(
+                "cite",
+                "How to &Cite",
+                partial(_cite, dialogs, say),
+                at="Help.30",
+                tip="The program, and what a paper says about a warp",
+            ),
+            Action(
                 "copy_details",
                 "Copy &Details",
                 self.fault_note.copy,
@@ -106,3 +119,18 @@ class Help(Capability):
                 at="Help.32",
             ),
         )
+
+
+def _cite(dialogs: Dialogs, say: Callable[[str], None]) -> None:
+    is_copied = dialogs.choose(
+        "How to cite",
+        "How to cite pinwarp",
+        CITING,
+        (
+            (True, "Copy BibTeX", QMessageBox.ButtonRole.AcceptRole),
+            (False, "Close", QMessageBox.ButtonRole.RejectRole),
+        ),
+    )
+    if is_copied:
+        QGuiApplication.clipboard().setText(BIBTEX)
+        say("BibTeX copied")

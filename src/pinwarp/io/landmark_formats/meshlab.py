@@ -108,7 +108,7 @@ def text_of(outgoing: Outgoing) -> Written:
      <point x="1.0" y="2.0" z="3.0" active="1" name="a &amp; b"/>
     </PickedPoints>
     """
-    lines = ["<!DOCTYPE PickedPoints>\n<PickedPoints>\n"]
+    lines = ["<!DOCTYPE PickedPoints>\n", *map(_comment, outgoing.remarks), "<PickedPoints>\n"]
     for landmark, position in zip(outgoing.landmarks, outgoing.places, strict=True):
         x, y, z = coordinates_text(position or (0.0, 0.0, 0.0))
         # Two characters that XML does not know at all.
@@ -117,3 +117,8 @@ def text_of(outgoing: Outgoing) -> Written:
         active = int(position is not None)
         lines.append(f' <point x="{x}" y="{y}" z="{z}" active="{active}" name={name}/>\n')
     return Written("".join([*lines, "</PickedPoints>\n"]))
+
+
+def _comment(remark: str) -> str:
+    # Two dashes would end it.
+    return f"<!-- {one_line(remark).replace('--', '- -')} -->\n"

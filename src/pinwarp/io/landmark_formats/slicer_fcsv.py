@@ -23,11 +23,8 @@ NAME = "3D Slicer .fcsv"
 SUFFIXES = (".fcsv",)
 HOLDS = Holds(empty=False, notes=True, locks=True, switches=True, frame="LPS", unit="mm")
 
-_HEADER = (
-    "# Markups fiducial file version = 4.11\n"
-    "# CoordinateSystem = LPS\n"
-    "# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n"
-)
+_OPENING_LINES = "# Markups fiducial file version = 4.11\n# CoordinateSystem = LPS\n"
+_COLUMNS_LINE = "# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n"
 _COLUMNS = [
     "id",
     "x",
@@ -96,7 +93,8 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
 
     Examples
     --------
-    >>> reading = read("a.fcsv", _HEADER + "1,12.5,-40,60,0,0,0,1,1,1,0,nasion,,\n", Side.SOURCE)
+    >>> text = _OPENING_LINES + _COLUMNS_LINE + "1,12.5,-40,60,0,0,0,1,1,1,0,nasion,,\n"
+    >>> reading = read("a.fcsv", text, Side.SOURCE)
     >>> reading.landmarks[0].name, reading.landmarks[0].source, reading.frame
     ('nasion', (12.5, -40.0, 60.0), 'LPS')
     """
@@ -189,7 +187,8 @@ def text_of(outgoing: Outgoing) -> Written:
     '1,500.0,0.0,1000.0,0,0,0,1,1,1,0,nasion,,'
     """
     placed = replace(outgoing, landmarks=in_millimetres(outgoing.landmarks, outgoing.unit))
-    lines = [_HEADER]
+    remarks = "".join(f"# {one_line(remark)}\n" for remark in outgoing.remarks)
+    lines = [_OPENING_LINES + remarks + _COLUMNS_LINE]
     missing = 0
     for landmark, position in zip(placed.landmarks, placed.places, strict=True):
         if position is None:

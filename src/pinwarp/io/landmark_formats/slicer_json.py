@@ -261,7 +261,7 @@ def text_of(outgoing: Outgoing) -> Written:
     for group in outgoing.groups:
         kind = "ClosedCurve" if group.is_closed else "Curve"
         markups.append(_markup([points[x] for x in group.points], kind, group.name))
-    return Written(_text(markups))
+    return Written(_text(markups, outgoing.remarks))
 
 
 def markup_text(places: Sequence[tuple[str, Position | None]], kind: str, name: str = "") -> str:
@@ -279,8 +279,10 @@ def markup_text(places: Sequence[tuple[str, Position | None]], kind: str, name: 
     return _text([_markup([(Landmark(label), at) for label, at in places], kind, name)])
 
 
-def _text(markups: Sequence[dict[str, Any]]) -> str:
-    root = {"@schema": _SCHEMA, "markups": markups}
+def _text(markups: Sequence[dict[str, Any]], remarks: Sequence[str] = ()) -> str:
+    # The schema allows for keys of others.
+    made = {"remarks": list(remarks)} if remarks else {}
+    root = {"@schema": _SCHEMA, **made, "markups": markups}
     return json.dumps(root, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 

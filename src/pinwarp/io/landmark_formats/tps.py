@@ -240,7 +240,8 @@ def text_of(outgoing: Outgoing) -> Written:
         for group in outgoing.groups
     ]
     single = [row for name, row in rows.items() if name not in along]
-    return Written(specimen_text(single, curves, outgoing.title_or_side))
+    comments = "".join(f"COMMENT={one_line(remark)}\n" for remark in outgoing.remarks)
+    return Written(specimen_text(single, curves, outgoing.title_or_side) + comments)
 
 
 def specimen_text(rows: Sequence[str], curves: Sequence[Sequence[str]], title: str) -> str:

@@ -63,6 +63,8 @@ class Outgoing:
     groups
         The curves and patches that some of the landmarks are points of; what the format has no
         place for is left out before.
+    remarks
+        A line each for people, such as what made the file; formats with comments have them.
     """
 
     landmarks: tuple[Landmark, ...]
@@ -70,6 +72,7 @@ class Outgoing:
     unit: str = ""
     title: str = ""
     groups: tuple[ReadGroup, ...] = ()
+    remarks: tuple[str, ...] = ()
 
     @property
     def places(self) -> list[Position | None]:

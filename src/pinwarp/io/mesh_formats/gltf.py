@@ -228,7 +228,7 @@ def write_glb(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     mesh
         The mesh.
     extras
-        Its normals; there is no room for scalars.
+        Its normals and remarks; there is no room for scalars.
 
     Raises
     ------
@@ -293,8 +293,9 @@ def _scene(mesh: Mesh, extras: VertexData) -> tuple[dict[str, Any], bytes]:
         {"buffer": 0, "byteOffset": end - table.nbytes, "byteLength": table.nbytes}
         for table, end in zip(tables, ends, strict=True)
     ]
+    made = {"extras": {"remarks": list(extras.plain_remarks)}} if extras.remarks else {}
     scene = {
-        "asset": {"version": "2.0", "generator": "pinwarp"},
+        "asset": {"version": "2.0", "generator": "pinwarp", **made},
         "scene": 0,
         "scenes": [{"nodes": [0]}],
         "nodes": [{"mesh": 0}],

@@ -141,7 +141,7 @@ def write_obj(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     mesh
         The mesh.
     extras
-        Its normals; there is no room for scalars.
+        Its normals and remarks; there is no room for scalars.
 
     Examples
     --------
@@ -152,7 +152,7 @@ def write_obj(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     v 0.3333333333333333 0.0 0.0
     """
     with path.open("w", encoding="ascii", newline="\n") as file:
-        file.write("# pinwarp\n")
+        file.writelines(f"# {line}\n" for line in extras.plain_remarks or ("pinwarp",))
         # repr gives the fewest digits that read back exactly; 9 would lose half of a double.
         for start in range(0, len(mesh.vertices), _ROWS):
             vertices = mesh.vertices[start : start + _ROWS].tolist()

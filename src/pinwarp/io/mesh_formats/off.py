@@ -72,7 +72,7 @@ def read_off(data: bytes, report: Report) -> Surface:
     return Surface(points, corners, sizes, notes)
 
 
-def write_off(path: Path, mesh: Mesh, _extras: VertexData = NO_DATA) -> None:
+def write_off(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     """Write an OFF file whose numbers read back exactly.
 
     Parameters
@@ -80,7 +80,9 @@ def write_off(path: Path, mesh: Mesh, _extras: VertexData = NO_DATA) -> None:
     path
         The file.
     mesh
-        The mesh; what else there is of its vertices is left out.
+        The mesh.
+    extras
+        Its remarks; there is no room for anything else.
 
     Examples
     --------
@@ -91,7 +93,9 @@ def write_off(path: Path, mesh: Mesh, _extras: VertexData = NO_DATA) -> None:
     0.1 0.0 0.0
     """
     with path.open("w", encoding="ascii", newline="\n") as file:
-        file.write(f"OFF\n{len(mesh.vertices)} {len(mesh.faces)} 0\n")
+        file.write("OFF\n")
+        file.writelines(f"# {line}\n" for line in extras.plain_remarks)
+        file.write(f"{len(mesh.vertices)} {len(mesh.faces)} 0\n")
         for start in range(0, len(mesh.vertices), _ROWS):
             vertices = mesh.vertices[start : start + _ROWS].tolist()
             file.writelines(f"{x!r} {y!r} {z!r}\n" for x, y, z in vertices)

@@ -202,7 +202,7 @@ def write_ply(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     mesh
         The mesh.
     extras
-        Normals and scalars; the latter as properties of single precision.
+        Normals, scalars and remarks; scalars as properties of single precision.
 
     Examples
     --------
@@ -229,8 +229,9 @@ def write_ply(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     faces = np.empty(len(mesh.faces), dtype=[("length", "u1"), ("corners", "<i4", 3)])
     faces["length"] = 3
     faces["corners"] = mesh.faces
+    comments = "".join(f"comment {line}\n" for line in extras.plain_remarks or ("pinwarp",))
     header = (
-        "ply\nformat binary_little_endian 1.0\ncomment pinwarp\n"
+        f"ply\nformat binary_little_endian 1.0\n{comments}"
         f"element vertex {len(mesh.vertices)}\n{properties}"
         f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
     )

@@ -85,7 +85,7 @@ def write_vtp(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     mesh
         The mesh.
     extras
-        Normals and scalars, in single precision.
+        Normals and scalars, in single precision, and remarks.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def write_vtu(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     mesh
         The mesh.
     extras
-        Normals and scalars, in single precision.
+        Normals and scalars, in single precision, and remarks.
 
     Raises
     ------
@@ -147,7 +147,7 @@ def write_legacy_vtk(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> No
     mesh
         The mesh.
     extras
-        Normals and scalars, in single precision.
+        Normals and scalars, in single precision, and remarks.
 
     Raises
     ------
@@ -164,7 +164,8 @@ def write_legacy_vtk(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> No
     """
     writer = vtkPolyDataWriter()
     writer.SetFileTypeToBinary()
-    writer.SetHeader("pinwarp")
+    # The title ends after 256 characters.
+    writer.SetHeader(("; ".join(extras.plain_remarks) or "pinwarp")[:255])
     _write(writer, writer.GetOutputStdString, path, _surface(mesh), extras)
 
 
@@ -200,7 +201,17 @@ def _write(
         raise OSError(errno.EIO, f"The mesh could not be written{reason}", str(path))
     content = output()
     # VTK hands out text where the bytes happen to be some.
-    path.write_bytes(content.encode() if isinstance(content, str) else content)
+    path.write_bytes(_remarked(content.encode() if isinstance(content, str) else content, extras))
+
+
+def _remarked(content: bytes, extras: VertexData) -> bytes:
+    """Put the remarks into a comment below the first line of XML; others have a title for them."""
+    if not extras.remarks or not content.startswith(b"<?xml"):
+        return content
+    # Two dashes would end the comment.
+    remarks = "\n".join(extras.plain_remarks).replace("--", "- -")
+    head, end, rest = content.partition(b"\n")
+    return head + end + f"<!-- {remarks} -->\n".encode() + rest
 
 
 def _surface(mesh: Mesh) -> vtkPolyData:

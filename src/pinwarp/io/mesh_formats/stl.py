@@ -193,7 +193,7 @@ def _first_bad_vertex(text: bytes) -> int:
     return 0
 
 
-def write_stl(path: Path, mesh: Mesh, _extras: VertexData = NO_DATA) -> None:
+def write_stl(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     """Write a binary STL file; its numbers have single precision, the format knows no other.
 
     Parameters
@@ -201,7 +201,9 @@ def write_stl(path: Path, mesh: Mesh, _extras: VertexData = NO_DATA) -> None:
     path
         The file.
     mesh
-        The mesh; its triangles get normals of their own, there is no room for anything else.
+        The mesh; its triangles get normals of their own.
+    extras
+        The first of its remarks; there is no room for anything else.
 
     Raises
     ------
@@ -228,5 +230,7 @@ def write_stl(path: Path, mesh: Mesh, _extras: VertexData = NO_DATA) -> None:
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     records["normal"] = np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
     with path.open("wb") as file:
-        file.write(b"pinwarp".ljust(80) + struct.pack("<I", len(records)))
+        # A header that begins with "solid" would be taken for text.
+        head = (*extras.plain_remarks, "pinwarp")[0].removeprefix("solid").encode()
+        file.write(head[:80].ljust(80) + struct.pack("<I", len(records)))
         file.write(records.tobytes())

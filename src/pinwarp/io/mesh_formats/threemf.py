@@ -13,6 +13,7 @@ from array import array
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from xml.sax.saxutils import escape
 
 import numpy as np
 from numpy.typing import NDArray
@@ -193,7 +194,7 @@ def _add(
         _add(parts, models, component, matrix, depth + 1)
 
 
-def write_3mf(path: Path, mesh: Mesh, _extras: VertexData = NO_DATA) -> None:
+def write_3mf(path: Path, mesh: Mesh, extras: VertexData = NO_DATA) -> None:
     """Write a 3MF file whose numbers read back exactly.
 
     Parameters
@@ -201,7 +202,9 @@ def write_3mf(path: Path, mesh: Mesh, _extras: VertexData = NO_DATA) -> None:
     path
         The file. It says no unit, which other programs take for the millimetre.
     mesh
-        The mesh; what else there is of its vertices is left out.
+        The mesh.
+    extras
+        Its remarks; there is no room for anything else.
 
     Examples
     --------
@@ -217,8 +220,10 @@ def write_3mf(path: Path, mesh: Mesh, _extras: VertexData = NO_DATA) -> None:
     triangles = "".join(
         f'<triangle v1="{a}" v2="{b}" v3="{c}"/>\n' for a, b, c in mesh.faces.tolist()
     )
+    remarks = escape("\n".join(extras.plain_remarks))
+    made = f'<metadata name="Description">{remarks}</metadata>' if remarks else ""
     model = (
-        f'{_XML}<model xmlns="{_CORE}"><resources><object id="1" type="model"><mesh>\n'
+        f'{_XML}<model xmlns="{_CORE}">{made}<resources><object id="1" type="model"><mesh>\n'
         f"<vertices>\n{vertices}</vertices>\n<triangles>\n{triangles}</triangles>\n</mesh></object>"
         '</resources><build><item objectid="1"/></build></model>\n'
     )

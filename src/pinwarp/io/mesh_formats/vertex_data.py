@@ -15,7 +15,7 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 @dataclass(frozen=True, eq=False)
 class VertexData:
-    """Normals and scalars of a mesh's vertices.
+    """Normals and scalars of a mesh's vertices, and how they came about.
 
     Parameters
     ----------
@@ -23,6 +23,8 @@ class VertexData:
         (m, 3) unit vectors, or None.
     scalars
         (m,) numbers by name; names are letters, digits and underscores.
+    remarks
+        Lines for people, such as what made the mesh; they go where a format has comments.
 
     Raises
     ------
@@ -37,11 +39,25 @@ class VertexData:
 
     normals: NDArray[np.float64] | None = None
     scalars: Mapping[str, NDArray[np.floating]] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in self.scalars:
             if not _NAME.fullmatch(name):
                 raise ValueError(f"{name!r} cannot be the name of a mesh's scalars.")
+
+    @property
+    def plain_remarks(self) -> tuple[str, ...]:
+        r"""The remarks as every format takes them: a line each, of ASCII.
+
+        Examples
+        --------
+        >>> VertexData(remarks=("of the fémur\nleft",)).plain_remarks
+        ('of the f?mur left',)
+        """
+        return tuple(
+            " ".join(remark.split()).encode("ascii", "replace").decode() for remark in self.remarks
+        )
 
 
 NO_DATA = VertexData()

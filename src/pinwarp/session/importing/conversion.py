@@ -273,12 +273,13 @@ def write_in_frame(
     unit: str = "",
     known: LandmarkFormat | None = None,
     groups: Iterable[ReadGroup] = (),
+    remarks: tuple[str, ...] = (),
 ) -> tuple[str, ...]:
     """Write landmarks such that the file's own frame is true of them.
 
     Parameters
     ----------
-    path, landmarks, side, unit, known, groups
+    path, landmarks, side, unit, known, groups, remarks
         As in :func:`~pinwarp.io.landmark_files.write_landmarks`.
     frame
         The frame the positions are in, ``"RAS"``, ``"LPS"`` or empty where nobody knows.
@@ -304,7 +305,9 @@ def write_in_frame(
         notes = (f"The positions were turned from {frame} to {fixed}.",)
     elif frame and not fixed:
         notes = (f"The positions are in {frame}, and {target.NAME} cannot say so.",)
-    written = write_landmarks(path, landmarks, side, unit=unit, known=target, groups=groups)
+    written = write_landmarks(
+        path, landmarks, side, unit=unit, known=target, groups=groups, remarks=remarks
+    )
     return (*notes, *written)
 
 

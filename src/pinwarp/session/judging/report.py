@@ -21,9 +21,11 @@ from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.io.report import Report, ReportRow
 from pinwarp.session.judging.check import groups_of
 from pinwarp.session.judging.elsewhere import elsewhere
+from pinwarp.session.judging.methods import methods_of
 from pinwarp.session.judging.quality import Quality, quality_of
 from pinwarp.session.judging.suggested import about_suggested
 from pinwarp.session.session import Session
+from pinwarp.session.warp.provenance import session_hash
 from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date, refinement_in_use
 from pinwarp.session.warp.result import WarpResult
 from pinwarp.session.warp.setting_words import settings_in_words
@@ -97,6 +99,7 @@ def report_of(
         made=f"Made by pinwarp {__version__} on {made:%d %B %Y at %H:%M} "
         f"(Python {platform.python_version()}, numpy {np.__version__})",
         facts=(*_facts(session, result), *_model_fact(elements)),
+        methods=methods_of(warp, quality),
         findings=(
             *(one.sentence for one in astray),
             *(finding.describe(names, unit) for finding in found),
@@ -145,6 +148,7 @@ def _facts(session: Session, result: WarpResult) -> tuple[tuple[str, str], ...]:
     facts = [(f"{side.value.capitalize()} mesh", _mesh_text(session, side)) for side in Side]
     facts += [
         ("Pairs", _pairs_text(session)),
+        ("Session", session_hash(session)),
         ("Unit", unit),
         *settings_in_words(session.settings, unit),
     ]

@@ -11,6 +11,7 @@ from pinwarp.core.landmarks import Landmark
 from pinwarp.core.mesh import Mesh
 from pinwarp.io.coefficients import Coefficients
 from pinwarp.session.session import Session
+from pinwarp.session.warp.provenance import session_hash
 from pinwarp.session.warp.refined import fitted_names
 from pinwarp.session.warp.slid_words import point_names
 from pinwarp.session.warp.solved import SolvedWarp, solved, source_of
@@ -112,4 +113,5 @@ def session_coefficients(session: Session | SolvedWarp) -> Coefficients:
         source_scaled=source.scaled if source is not None else 1.0,
         destination_scaled=destination.scaled if destination is not None else 1.0,
         version=__version__,
+        session=session_hash(session),
     )

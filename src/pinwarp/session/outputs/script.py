@@ -15,6 +15,7 @@ from pinwarp.core.words import counted
 from pinwarp.io.mesh_reference import MeshReference
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session.session import Session
+from pinwarp.session.warp.provenance import provenance
 from pinwarp.session.warp.refined import fitted_names, refinement_in_use, warp_in_words
 from pinwarp.session.warp.slid_words import point_names
 from pinwarp.session.warp.solved import SolvedWarp, solved
@@ -58,7 +59,7 @@ def script_of(session: Session | SolvedWarp, folder: Path) -> str:
         raise PinwarpError("There is no source mesh to warp: open one first.")
     if not session.pairs:
         raise PinwarpError("There is no pair yet: place a landmark on both meshes first.")
-    path, words = source.path, warp_in_words(session)
+    path, words, made = source.path, warp_in_words(session), provenance(session)
     warped = f"{path.stem}_warped{path.suffix}"
     placed = len(session.pairs)
     session, is_slid = _of_plain_pairs(session, warp)
@@ -71,6 +72,8 @@ def script_of(session: Session | SolvedWarp, folder: Path) -> str:
     return "\n".join(
         [
             f'"""Warp a mesh as pinwarp {__version__} did: {words}, {count}."""',
+            "",
+            *(f"# {' '.join(line.split())}" for line in made),
             "",
             *(["from dataclasses import replace"] if changes else []),
             "from pathlib import Path",

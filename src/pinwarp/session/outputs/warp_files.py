@@ -15,11 +15,13 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.core.mirror import mirrored_points
 from pinwarp.core.spline import Spline
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES, read_landmarks
+from pinwarp.io.mesh_formats.vertex_data import VertexData
 from pinwarp.io.meshes import MESH_SUFFIXES, write_mesh
 from pinwarp.io.osim.bone import mesh_suffix, read_any_mesh, split_bone_path
 from pinwarp.session.importing.conversion import frame_notes, write_in_frame
 from pinwarp.session.outputs.replacing import refuse_to_replace
 from pinwarp.session.session import Session
+from pinwarp.session.warp.provenance import provenance
 from pinwarp.session.warp.solved import SolvedWarp, solved
 
 WARPED = "_warped"
@@ -94,6 +96,7 @@ class FileWarper:
         session = warp.session
         self._unit = session.unit
         self._spline: Spline = warp.applied
+        self._made = provenance(session)
         self._axes = "" if session.source is None else session.source.mirrored
         self._scale = 1.0 if session.source is None else session.source.scaled
         self._mesh = session.mesh(Side.SOURCE)
@@ -130,7 +133,8 @@ class FileWarper:
         if mesh_suffix(source) in MESH_SUFFIXES:
             file = read_any_mesh(source)
             faces = file.mesh.faces[:, ::-1] if len(self._axes) % 2 else file.mesh.faces
-            write_mesh(output, Mesh(self._carried(file.mesh.vertices), faces))
+            mesh = Mesh(self._carried(file.mesh.vertices), faces)
+            write_mesh(output, mesh, VertexData(remarks=self._made))
             return file.notes
         reading = read_landmarks(source, Side.SOURCE)
         placed = [landmark for landmark in reading.landmarks if landmark.source is not None]
@@ -142,7 +146,14 @@ class FileWarper:
         notes = frame_notes(reading, self._unit)
         # Numbers of a file with a unit stay in it; others are in the session's.
         unit = "" if reading.unit else self._unit
-        notes += write_in_frame(output, landmarks, Side.DESTINATION, frame=reading.frame, unit=unit)
+        notes += write_in_frame(
+            output,
+            landmarks,
+            Side.DESTINATION,
+            frame=reading.frame,
+            unit=unit,
+            remarks=self._made,
+        )
         skipped = tuple(f"line {x.line} was skipped: {x.reason}." for x in reading.skipped)
         return (*reading.notes, *notes, *skipped)
 

@@ -17,6 +17,7 @@ from pinwarp.core.words import counted, some_of
 from pinwarp.io.group_record import METHOD as SLIDING_METHOD
 from pinwarp.io.landmark_files import LandmarkReading, located, read_landmarks, write_landmarks
 from pinwarp.io.manifest import Subject
+from pinwarp.io.mesh_formats.vertex_data import VertexData
 from pinwarp.io.meshes import MeshFile, read_mesh, write_mesh
 from pinwarp.io.osim.bone import read_any_mesh
 from pinwarp.io.reading import hash_of
@@ -37,6 +38,7 @@ from pinwarp.session.study.first_pass import (
 from pinwarp.session.study.running import why_it_failed
 from pinwarp.session.suggesting import METHOD as GUESS_METHOD
 from pinwarp.session.suggesting import missing_of
+from pinwarp.session.warp.provenance import provenance
 from pinwarp.session.warp.refining import RefinementOptions, refined_session
 from pinwarp.session.warp.solved import solved
 from pinwarp.version import __version__
@@ -154,9 +156,11 @@ def _warp(task: Task) -> tuple[Check, tuple[str, ...], FirstPass | None]:
     reference = task.session.source
     known = _source_index(reference) if isinstance(reference, MeshReference) else None
     checked = check(warp, known)
-    write_mesh(task.mesh, warped_mesh(warp))
+    made = provenance(warp.session)
+    write_mesh(task.mesh, warped_mesh(warp), VertexData(remarks=made))
     if task.passengers is not None:
-        write_landmarks(task.passengers, warped_passengers(warp), Side.DESTINATION)
+        carried = warped_passengers(warp)
+        write_landmarks(task.passengers, carried, Side.DESTINATION, remarks=made)
     # What somebody may have worked on since is never replaced.
     if task.suggestion is not None and not task.suggestion.session.exists():
         write_session(task.suggestion.session, to_be_seen)
