@@ -12,13 +12,13 @@ export PYTHON
 # The system packages come before everything else, with -j too.
 .NOTPARALLEL:
 
-.PHONY: run test lint types layers check bench picture clean help
+.PHONY: run test lint types layers check bench pictures clean help
 
 help:
 	@echo "make run      open the window on the sample bones"
 	@echo "make test     lint, types, import rules and tests, under a virtual screen"
 	@echo "make bench    speed and memory against other libraries, under 5 minutes"
-	@echo "make picture  draw the README's picture anew"
+	@echo "make pictures draw the pictures of the README and of the user guide anew"
 	@echo "make clean    remove the environment and what was built"
 
 # Without a display the window cannot open: a picture of it is the next best thing.
@@ -56,8 +56,8 @@ layers:
 bench: system-with-screen $(VENV)/dev
 	$(SCREEN) $(BIN)/python -m tests.benchmarks $(ARGS)
 
-picture: system-with-screen $(VENV)/run
-	$(SCREEN) $(BIN)/pinwarp --demo --screenshot assets/screenshot.png
+pictures: system-with-screen $(VENV)/run
+	xvfb-run -a -s "-screen 0 1280x800x24" $(BIN)/python assets/make_help_pictures.py
 
 $(VENV)/pip:
 	$(PYTHON) -m venv $(VENV)

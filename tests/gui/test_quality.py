@@ -502,14 +502,6 @@ def test_an_arrow_is_thin_and_ends_before_the_sign():
     assert len(dashes) > 1, "dashed"
 
 
-def test_the_help_menu_explains_the_figures(sample):
-    sample.user.trigger("about_quality")
-    title, text, _ = sample.user.dialogs.told[-1]
-    assert title == "About the quality figures"
-    for word in ("residual", "leave-one-out", "standardised", "suspect", "isolated"):
-        assert word in text
-
-
 def crowd_of(sample, places):
     """Bring in pairs with source places that repeat, and ends that disagree."""
     ends = places + np.random.default_rng(1).normal(size=places.shape)

@@ -187,11 +187,11 @@ def begin(window: MainWindow, opening: Opening, *, demo: bool = False) -> None:
 
 def save_picture(window: MainWindow, path: Path) -> bool:
     """Wait until everything is drawn and save a picture of the window."""
-    if not _wait_until(lambda: window.is_settled):
+    if not wait_until(lambda: window.is_settled):
         print("pinwarp: gave up waiting for the picture", file=sys.stderr)
         return False
     # One more turn for the last repaint.
-    _wait(150)
+    wait(150)
     path.parent.mkdir(parents=True, exist_ok=True)
     if not window.grab().save(str(path)):
         print(f"pinwarp: cannot write {path}", file=sys.stderr)
@@ -199,16 +199,18 @@ def save_picture(window: MainWindow, path: Path) -> bool:
     return True
 
 
-def _wait(milliseconds: int) -> None:
+def wait(milliseconds: int) -> None:
+    """Let the window live for a while."""
     loop = QEventLoop()
     QTimer.singleShot(milliseconds, loop.quit)
     loop.exec()
 
 
-def _wait_until(condition: Callable[[], bool]) -> bool:
+def wait_until(condition: Callable[[], bool]) -> bool:
+    """Let the window live until something holds; False where that takes too long."""
     waited = 0
     while not condition():
-        _wait(20)
+        wait(20)
         waited += 20
         if waited > _LONGEST_WAIT_MS:
             return False

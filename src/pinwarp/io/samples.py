@@ -1,4 +1,4 @@
-"""The files shipped with the program: sample bones and icons."""
+"""The files shipped with the program: sample bones, icons and the user guide."""
 
 from __future__ import annotations
 
@@ -41,3 +41,14 @@ def sample_model() -> Path:
     'leg.osim'
     """
     return assets_folder() / "leg_model" / "leg.osim"
+
+
+def help_folder() -> Path:
+    """Return the folder with the pages of the user guide.
+
+    Examples
+    --------
+    >>> len(list(help_folder().glob("*.md"))) > 5
+    True
+    """
+    return _PACKAGE / "help"

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 
 from qtpy.QtCore import QByteArray, QEvent, QSettings, QSize, Qt, QTimer, Signal
 from qtpy.QtGui import QAction, QShowEvent
@@ -78,6 +79,7 @@ class WindowFrame(QMainWindow):
         self.progress, self.cancel = progress.bar, progress.cancel
         self.shortcuts: ShortcutOverlay | None = None
         self._fitted: list[QDockWidget] = []
+        self._actions: Sequence[QAction] = ()
         self.setWindowIcon(icon("pinwarp"))
         self.resize(SIZE)
         self._was_placed = False
@@ -97,6 +99,7 @@ class WindowFrame(QMainWindow):
         actions
             All of them; where one stands is its own to say.
         """
+        self._actions = actions
         self._lay_out([widget for one in capabilities for widget in one.above])
         for hint in (widget for one in capabilities for widget in one.hints):
             self.statusBar().addWidget(hint, 1)
@@ -123,6 +126,12 @@ class WindowFrame(QMainWindow):
         self.addToolBar(bar)
         self.shortcuts = ShortcutOverlay(self, shortcut_groups(actions))
         self._first_layout = self.saveState()
+
+    @property
+    def actions_by_key(self) -> Mapping[str, QAction]:
+        """All that can be asked for."""
+        named = (action for action in self._actions if action.objectName())
+        return MappingProxyType({action.objectName(): action for action in named})
 
     def _lay_out(self, above: Sequence[QWidget]) -> None:
         splitter = QSplitter(Qt.Orientation.Horizontal)

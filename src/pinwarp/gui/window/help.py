@@ -13,17 +13,7 @@ from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.window.fault_note import FaultNote
 from pinwarp.gui.window.faults import Faults
-from pinwarp.gui.window.help_text import (
-    ABOUT,
-    ABOUT_MODELS,
-    ABOUT_PENALTY,
-    ABOUT_QUALITY,
-    ABOUT_REFINING,
-    ABOUT_SEMILANDMARKS,
-    ABOUT_SUGGESTING,
-    BIBTEX,
-    CITING,
-)
+from pinwarp.gui.window.help_text import ABOUT, BIBTEX, CITING
 
 
 class Help(Capability):
@@ -58,45 +48,9 @@ class Help(Capability):
                 "shortcuts",
                 "&Shortcuts",
                 show_shortcuts,
-                at="Help.11",
-                keys="F1 ?",
+                at="Help.12",
+                keys="?",
                 tip="All keys and mouse gestures",
-            ),
-            Action(
-                "about_penalty",
-                "About the Warping &Penalty",
-                lambda: dialogs.tell("About the warping penalty", ABOUT_PENALTY),
-                at="Help.21",
-            ),
-            Action(
-                "about_quality",
-                "About the &Quality Figures",
-                lambda: dialogs.tell("About the quality figures", ABOUT_QUALITY),
-                at="Help.22",
-            ),
-            Action(
-                "about_semilandmarks",
-                "About Semi&landmarks",
-                lambda: dialogs.tell("About semilandmarks", ABOUT_SEMILANDMARKS),
-                at="Help.23",
-            ),
-            Action(
-                "about_refining",
-                "About &Refining",
-                lambda: dialogs.tell("About refining to the surface", ABOUT_REFINING),
-                at="Help.24",
-            ),
-            Action(
-                "about_models",
-                "About &Models",
-                lambda: dialogs.tell("About models of OpenSim", ABOUT_MODELS),
-                at="Help.26",
-            ),
-            Action(
-                "about_suggesting",
-                "About S&uggestions",
-                lambda: dialogs.tell("About suggestions", ABOUT_SUGGESTING),
-                at="Help.25",
             ),
             Action(
                 "cite",

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from types import MappingProxyType
 
 from qtpy.QtCore import QSettings
-from qtpy.QtGui import QAction, QCloseEvent
+from qtpy.QtGui import QCloseEvent
 
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.window.frame import WindowFrame
@@ -51,8 +49,7 @@ class MainWindow(WindowFrame):
             tip="Put all panels back where they were at first",
         )
         of_parts = (action for part in self.parts for action in part.actions)
-        self._actions = [*of_parts, reset, quit_action]
-        self.furnish(list(self.parts), self._actions)
+        self.furnish(list(self.parts), [*of_parts, reset, quit_action])
         self.scenes.show_from(*self.parts)
         self._signals = (
             editor.session_changed,
@@ -68,12 +65,6 @@ class MainWindow(WindowFrame):
             part.recall(settings)
         self._on_change()
 
-    @property
-    def actions_by_key(self) -> Mapping[str, QAction]:
-        """All that can be asked for."""
-        named = (action for action in self._actions if action.objectName())
-        return MappingProxyType({action.objectName(): action for action in named})
-
     def _on_change(self, changed: object = None) -> None:
         editor = self.editor
         if editor.is_previewing and isinstance(changed, Session):
@@ -81,7 +72,7 @@ class MainWindow(WindowFrame):
             return
         self.setWindowTitle(f"{session_name(editor.path)}[*] – pinwarp")
         self.setWindowModified(editor.is_dirty)
-        for action in self._actions:
+        for action in self.actions_by_key.values():
             if isinstance(action, Action):
                 action.renew()
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from qtpy.QtGui import QAction
+from qtpy.QtGui import QAction, QKeySequence
 from qtpy.QtWidgets import QMenu, QMenuBar, QWidget
 
 from pinwarp.gui.capability.action import PLACES, placed
@@ -67,6 +67,37 @@ def make_menus(bar: QMenuBar, actions: Iterable[QAction]) -> list[QMenu]:
         fill(menu, everything, title.replace("&", ""))
         menus.append(menu)
     return menus
+
+
+def way_to(action: QAction) -> str:
+    """Return where an action is found in the menus, such as ``"File > Export > Report"``."""
+    place = str(action.property(PLACES) or "").partition(" ")[0].partition(".")[0]
+    words = [action.text().partition("\t")[0]]
+    while place in INNER:
+        title, at = INNER[place]
+        words.insert(0, title)
+        place = at.partition(".")[0]
+    return " > ".join(word.replace("&", "") for word in (place, *words))
+
+
+def told(action: QAction, what: str) -> str:
+    """Return what the user guide says of an action, as Markdown.
+
+    Parameters
+    ----------
+    action
+        The action.
+    what
+        ``"name"``, ``"keys"``, or nothing for the way to it and its first shortcut.
+    """
+    name, _, held = action.text().replace("&", "").partition("\t")
+    shortcut = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
+    keys = shortcut or held.removesuffix(" (hold)")
+    if what == "name":
+        return name
+    if what == "keys":
+        return f"**{keys}**"
+    return f"**{way_to(action)}**" + (f" ({keys})" if keys else "")
 
 
 def shortcut_groups(actions: Iterable[QAction]) -> list[tuple[str, list[QAction]]]:

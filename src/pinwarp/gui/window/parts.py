@@ -26,6 +26,7 @@ from pinwarp.gui.maps.presenter import MapPresenter
 from pinwarp.gui.model.export import ModelExport
 from pinwarp.gui.model.opened import OpenedModel
 from pinwarp.gui.model.presenter import ModelPresenter
+from pinwarp.gui.pages.presenter import UserGuide
 from pinwarp.gui.penalty.comparison import PenaltyComparison
 from pinwarp.gui.penalty.snapshots import Snapshots
 from pinwarp.gui.penalty.tuning import PenaltyTuning
@@ -48,6 +49,7 @@ from pinwarp.gui.warp.shown_session import ShownSession
 from pinwarp.gui.warp.warps import Warps
 from pinwarp.gui.window.frame import WindowFrame
 from pinwarp.gui.window.help import Help
+from pinwarp.gui.window.menus import told
 from pinwarp.gui.window.undoing import Undoing
 from pinwarp.gui.window.window_dialogs import WindowDialogs
 from pinwarp.io.file_names import session_name
@@ -177,6 +179,7 @@ class Parts:
             lambda: self.model.rows,
         )
         self.file_warping = FileWarping(editor, tasks)
+        self.user_guide = UserGuide(lambda key, what: told(frame.actions_by_key[key], what), frame)
         self.help = Help(
             dialogs, frame.faults, lambda: source.graphics, say, frame.toggle_shortcuts
         )
