@@ -32,7 +32,7 @@ from pinwarp.session.session import Session
 
 PICTURES = help_folder() / "pictures"
 # As wide as the guide's text.
-WIDTH = 660
+WIDTH = 630
 
 
 class Studio:

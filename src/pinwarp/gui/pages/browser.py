@@ -37,6 +37,7 @@ SIZE = QSize(980, 700)
 _MARGIN = 16
 # Of the lines of a page, in per cent, and of the titles beside it, in pixels.
 _LINE_HEIGHT, _TITLE_PADDING = 130, 5
+_LINK = {False: "#1d5fa8", True: "#7db8ee"}
 # What was searched for, on either theme.
 _FOUND = {False: "#ffe08a", True: "#6b5200"}
 
@@ -128,6 +129,7 @@ class GuideWindow(QWidget):
         """Mark what was found in the colours of the theme."""
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
+            self._dress()
             self._mark()
 
     def _list(self, pages: Sequence[Page]) -> None:
@@ -154,17 +156,30 @@ class GuideWindow(QWidget):
             self._shown = name
             dialect = QTextDocument.MarkdownFeature.MarkdownDialectGitHub
             self.text.document().setMarkdown(self._pages[name].text, dialect)
-            self._space_lines()
+            self._dress()
             self.text.moveCursor(QTextCursor.MoveOperation.Start)
         self._mark()
 
-    def _space_lines(self) -> None:
-        # Markdown knows no style sheet.
-        loose = QTextBlockFormat()
+    def _dress(self) -> None:
+        """Space the lines, and write links in a colour that can be read: Markdown has no sheet."""
+        link, loose = QTextCharFormat(), QTextBlockFormat()
+        link.setForeground(QColor(_LINK[theme.is_dark()]))
         loose.setLineHeight(_LINE_HEIGHT, QTextBlockFormat.LineHeightTypes.ProportionalHeight.value)
-        cursor = QTextCursor(self.text.document())
-        cursor.select(QTextCursor.SelectionType.Document)
-        cursor.mergeBlockFormat(loose)
+        block = self.text.document().begin()
+        while block.isValid():
+            formats = [piece.fragment().charFormat() for piece in block]
+            # A line as high as a picture is high enough.
+            if not any(x.isImageFormat() for x in formats):
+                QTextCursor(block).mergeBlockFormat(loose)
+            for piece in block:
+                fragment = piece.fragment()
+                if fragment.charFormat().isAnchor():
+                    place = QTextCursor(block)
+                    place.setPosition(fragment.position())
+                    end = fragment.position() + fragment.length()
+                    place.setPosition(end, QTextCursor.MoveMode.KeepAnchor)
+                    place.mergeCharFormat(link)
+            block = block.next()
 
     def _mark(self) -> None:
         """Mark every place of the words that are searched for."""
