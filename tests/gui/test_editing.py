@@ -311,7 +311,7 @@ def test_exporting_passengers_without_any_says_how_to_add_one(user, tmp_path):
 
 
 def test_the_sheet_of_shortcuts_lists_every_key_and_closes_with_any(user):
-    user.press(Qt.Key.Key_F1)
+    user.press(Qt.Key.Key_Question)
     sheet = user.window.shortcuts
     assert sheet.isVisible()
     listed = {key for _, lines in sheet.lines() for key, _ in lines}

@@ -18,7 +18,13 @@ from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.landmarks import Position, Side
 from pinwarp.gui.painted.arrows import paint_arrow
-from pinwarp.gui.painted.captions import paint_caption, paint_hint
+from pinwarp.gui.painted.captions import (
+    paint_badge,
+    paint_caption,
+    paint_hint,
+    paint_next_click,
+    paint_tool_words,
+)
 from pinwarp.gui.painted.legend import PaintedLegend
 from pinwarp.gui.painted.markers import (
     FAINT,
@@ -47,6 +53,7 @@ from pinwarp.gui.scene.drawables import (
     Hint,
     Marker,
     Markers,
+    NextClick,
     OtherGhosts,
     Paths,
     ScaleBar,
@@ -103,11 +110,14 @@ class MarkerLayer(QWidget):
             Markers: self._paint_markers,
             Counterpart: self._paint_counterpart,
             Ghost: self._paint_ghost,
+            NextClick: self._paint_next_click,
             Badge: self._paint_badge,
             ToolWords: self._paint_tool_words,
         }
         self.painted_for: object = None
         self._dark = False
+        # Where the scale bar begins.
+        self._free_until = 0.0
         # For a picture: signs in so many pixels, places seen from its middle.
         self.pixels_per_pixel = 1.0
         self.offset = (0.0, 0.0)
@@ -235,7 +245,12 @@ class MarkerLayer(QWidget):
         length = self._projection.unit_per_pixel
         if not 0 < length < math.inf:
             return
-        paint_scale_bar(painter, QRectF(self.rect()), length, bar.unit, dark=self._dark)
+        where = paint_scale_bar(painter, QRectF(self.rect()), length, bar.unit, dark=self._dark)
+        self._free_until = where.left()
+
+    def _paint_next_click(self, painter: QPainter, step: NextClick) -> None:
+        view = QRectF(self.rect())
+        paint_next_click(painter, step, view, self._free_until, dark=self._dark)
 
     def _paint_hint(self, painter: QPainter, hint: Hint) -> None:
         paint_hint(painter, hint, QRectF(self.rect()), dark=self._dark)
@@ -259,32 +274,10 @@ class MarkerLayer(QWidget):
         return self.devicePixelRatioF() * self.pixels_per_pixel
 
     def _paint_tool_words(self, painter: QPainter, tool: ToolWords) -> None:
-        """Say at the lower edge what to do, in as many lines as it takes."""
-        room = QRectF(0, 0, min(460, self.width() - 24) - 20, self.height() / 2)
-        flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
-        words = painter.boundingRect(room, flags, tool.words)
-        plate = words.adjusted(-10, -5, 10, 5)
-        # Above the scale bar.
-        plate.moveBottom(self.height() - 44)
-        plate.moveLeft((self.width() - plate.width()) / 2)
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(theme.INK))
-        painter.drawRoundedRect(plate, 6, 6)
-        painter.setPen(QColor(theme.PAPER))
-        painter.drawText(plate, flags, tool.words)
+        paint_tool_words(painter, tool, QRectF(self.rect()))
 
     def _paint_badge(self, painter: QPainter, badge: Badge) -> None:
-        metrics, margin = painter.fontMetrics(), 10
-        words = metrics.elidedText(
-            badge.words, Qt.TextElideMode.ElideRight, self.width() - 2 * margin - 20
-        )
-        plate = QRectF(0, margin, metrics.horizontalAdvance(words) + 20, metrics.height() + 8)
-        plate.moveRight(self.width() - margin)
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(theme.INK))
-        painter.drawRoundedRect(plate, 6, 6)
-        painter.setPen(QColor(theme.PAPER))
-        painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, words)
+        paint_badge(painter, badge, QRectF(self.rect()))
 
     def _paint_ghost(self, painter: QPainter, ghost: Ghost) -> None:
         """Paint the next ghost, faintly behind the bone, and its name, which is always read."""

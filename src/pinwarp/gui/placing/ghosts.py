@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 from pinwarp.core.landmarks import Landmark, Side, as_position
 from pinwarp.gui.capability.capability import Capability
@@ -39,6 +40,11 @@ class Ghosts(Capability):
         self._known: dict[Side, Ghost | None] = {}
         self._known_for: dict[Side, object] = {}
         self._expected: Callable[[], Sequence[Ghost]] = tuple
+
+    @property
+    def renewed(self) -> Any:
+        """The signal that there may be others."""
+        return self._warps.result_changed
 
     def follow(self, expected: Callable[[], Sequence[Ghost]]) -> None:
         """Let somebody else expect landmarks on the destination, in the order of their turn."""

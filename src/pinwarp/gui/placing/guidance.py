@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from qtpy.QtWidgets import QLabel
 
@@ -12,6 +12,7 @@ from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.placing.ghosts import Ghosts
 from pinwarp.gui.placing.guide_bar import GuideBar
 from pinwarp.gui.placing.hand import Hand
+from pinwarp.gui.scene.drawables import Drawable, NextClick
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, FileTasks
 from pinwarp.io.template import read_template
@@ -20,6 +21,12 @@ from pinwarp.session.guide import next_incomplete, step_at, with_template
 from pinwarp.session.session import Session
 from pinwarp.session.signals import isolated
 
+# With fewer of them, where to click next may still be new.
+_BEGINNER_PAIRS = 4
+_BEGIN = {
+    Side.SOURCE: "Click a place on this bone,",
+    Side.DESTINATION: "then the same place on this one",
+}
 _ONLY_POINTS = {
     Side.SOURCE: "The source has no mesh: its landmarks are imported or typed. Ctrl+1 opens one.",
     Side.DESTINATION: "The destination has no mesh: its landmarks are imported or typed, and the "
@@ -97,6 +104,8 @@ class Guidance(Capability):
         self._shown_on = (editor.selection_changed, editor.view_changed)
         for signal in self._shown_on:
             signal.connect(self.show)
+        # A ghost comes with the warp, after the click that asked for it.
+        ghosts.renewed.connect(self._on_ghosts)
         self.show()
 
     def shut_down(self) -> None:
@@ -104,6 +113,11 @@ class Guidance(Capability):
         self._editor.session_changed.disconnect(self._on_session)
         for signal in self._shown_on:
             signal.disconnect(self.show)
+        self._ghosts.renewed.disconnect(self._on_ghosts)
+
+    def _on_ghosts(self, *_result: object) -> None:
+        if not self._editor.is_previewing:
+            self._show_hint()
 
     def _on_session(self, _session: Session) -> None:
         editor = self._editor
@@ -122,6 +136,26 @@ class Guidance(Capability):
         is_there = guided is not None and session.index_of(guided) is not None
         self.bar.show_step(session, step_at(session, guided) if guided and is_there else None)
         self._show_hint()
+
+    def drawables(self, side: Side) -> Iterator[Drawable]:
+        """Say in the view what the next click there does, while somebody has to know."""
+        if words := self.next_click(side):
+            yield NextClick(words)
+
+    def next_click(self, side: Side) -> str:
+        """Return in few words what the next click on a side does; nothing where it need not."""
+        editor, session = self._editor, self._editor.session
+        no_mesh = any(session.mesh(one) is None for one in Side)
+        if no_mesh or editor.view.locked or any(words() for words in self._others):
+            return ""
+        target, guided = self._ghosts.target(side), editor.view.guided
+        if target is not None:
+            landmark = session.landmark(target)
+            is_there = landmark is not None and landmark.position(side) is not None
+            return "" if guided and is_there else f"Click: {target}"
+        if len(session.pairs) < _BEGINNER_PAIRS and self._ghosts.target(side.other) is None:
+            return _BEGIN[side]
+        return ""
 
     def give_way_to(self, words: Callable[[], str]) -> None:
         """Let somebody else say what a click would do, while it has words for that."""
@@ -153,6 +187,8 @@ class Guidance(Capability):
         targets = [self._ghosts.target(side) or "a new landmark" for side in Side]
         on_both = "A click on either bone places a new landmark."
         on_each = f"A click on the source places {targets[0]}, on the destination {targets[1]}."
+        if targets[0] == targets[1]:
+            on_each = f"A click on either bone places {targets[0]}."
         space = self._hand.accept_action.keys
         ghost = f"  {space} accepts the ghost." if self._hand.offers_ghost else ""
         says = on_each if any(map(self._ghosts.target, Side)) else on_both

@@ -24,6 +24,7 @@ from pinwarp.session.signals import isolated
 
 # An arrow key moves by this share of the bone, unless a step was set.
 NUDGE_SHARE = 1 / 500
+_STRAY = "That click came with the drag and did nothing: click again."
 # Nearer to the surface than this share of the bone, a landmark counts as on it.
 ON_SURFACE = 1e-4
 
@@ -144,6 +145,8 @@ class Hand(Capability):
         editor = self._editor
         viewport.surface_clicked.connect(lambda position: self.place(side, position))
         viewport.surface_ctrl_clicked.connect(lambda position: self.add_passenger(side, position))
+        viewport.surface_shift_clicked.connect(lambda position: self.place_again(side, position))
+        viewport.stray_clicked.connect(lambda: self.refused.emit(_STRAY))
         viewport.background_clicked.connect(editor.select)
         viewport.ghost_clicked.connect(
             lambda name, position: self.click_ghost(name, side, position)
@@ -178,6 +181,24 @@ class Hand(Capability):
             pattern=editor.view.name_pattern,
         )
         self._placed(session, f"Place {name}", name, side)
+
+    def place_again(self, side: Side, position: Iterable[float] | None) -> None:
+        """Put the selected landmark where a side was clicked, wherever it was before."""
+        editor = self._editor
+        names = editor.selection.names
+        landmark = editor.committed.landmark(names[0]) if len(names) == 1 else None
+        if landmark is None:
+            self.refused.emit("Select one landmark first: Shift+click puts it where you click.")
+        elif position is None:
+            self.refused.emit(
+                f"There is no surface here: click on the bone to put {names[0]} on it."
+            )
+        elif landmark.role is Role.PASSENGER and side is Side.DESTINATION:
+            self.refused.emit(f"{landmark.name} is a passenger: the warp carries it over.")
+        elif not self._is_locked(landmark):
+            session = edits.move(editor.committed, landmark.name, side, as_position(position))
+            verb = "Place" if landmark.position(side) is None else "Re-place"
+            self._placed(session, f"{verb} {landmark.name}", landmark.name, side)
 
     def share_accepting(self, accept: Callable[[bool], bool], offers: Callable[[], bool]) -> None:
         """Let somebody else accept ghosts of its own by the same key.

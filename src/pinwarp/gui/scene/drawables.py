@@ -303,6 +303,13 @@ class ToolWords:
 
 
 @dataclass(frozen=True)
+class NextClick:
+    """What the next click here does, in few words."""
+
+    words: str
+
+
+@dataclass(frozen=True)
 class Star:
     """Where the next landmark helps most, and the unit of its figure."""
 
@@ -369,5 +376,5 @@ class Badge:
 Rendered = Bone | Cut | Motion | Overlay | Colouring | FoldedSurface | GridLines
 Semilandmarks = Dots | Paths | Handles | Slides
 Signs = Markers | Arrows | Ghost | OtherGhosts | Counterpart | Star | Semilandmarks | ModelElements
-Painted = Signs | Legend | Caption | ScaleBar | Hint | Badge | ToolWords
+Painted = Signs | Legend | Caption | ScaleBar | Hint | NextClick | Badge | ToolWords
 Drawable = Rendered | Painted

@@ -9,6 +9,7 @@ from pinwarp.core.alignment import Similarity
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.scene.camera_pose import Matrix, Pose, inverse, relation_of
 from pinwarp.gui.views.canvas import Canvas
+from pinwarp.gui.views.viewport import Viewport
 from pinwarp.session.view import LinkMode
 
 
@@ -46,6 +47,8 @@ class CameraLink:
             tag = camera.AddObserver("ModifiedEvent", lambda *_, side=side: self._on_moved(side))
             self._tags.append((camera, tag))
             view.orbiting_changed.connect(self._on_orbiting)
+            if isinstance(view, Viewport):
+                view.turning_alone.connect(self._turn_alone)
 
     def unlink(self) -> None:
         """Let go of the cameras."""
@@ -80,6 +83,11 @@ class CameraLink:
         # First, while the relation of both is still known.
         self._follow(side, pose)
         self._views[side].set_pose(pose)
+
+    def _turn_alone(self, alone: bool) -> None:
+        """Let a hand turn one bone and leave the other; they keep how they stand then."""
+        self._followed = self._fit()
+        self._busy = alone
 
     @contextmanager
     def on_their_own(self) -> Iterator[None]:

@@ -23,6 +23,8 @@ from pinwarp.session.warp.ghost import Ghost
 # or a handle grabs it.
 SLOP = 4
 REACH = 10
+# A click that begins so soon after a drag ended belongs to it: the hand let go too early.
+AFTER_DRAG_MS = 333
 # The wheel has come to rest when no notch came for this long.
 ZOOM_REST_MS = 250
 _ARROWS = {
@@ -43,6 +45,8 @@ class _Press:
     offset: QPointF
     dragging: bool = False
     twice: bool = False
+    # Begun when a drag had just ended.
+    stray: bool = False
 
 
 class Viewport(Canvas):
@@ -60,6 +64,9 @@ class Viewport(Canvas):
 
     surface_clicked = Signal(object)
     surface_ctrl_clicked = Signal(object)
+    surface_shift_clicked = Signal(object)
+    stray_clicked = Signal()
+    turning_alone = Signal(bool)
     nudged = Signal(int, int)
     background_clicked = Signal()
     landmark_clicked = Signal(str)
@@ -78,6 +85,8 @@ class Viewport(Canvas):
         super().__init__(side, surfaces, parent)
         self.tool: Tool | None = None
         self._passing: Qt.MouseButton | None = None
+        self._is_alone = False
+        self._drag_ended: int | None = None
         self._hovered: str | None = None
         self._zoom_rest = QTimer(self)
         self._zoom_rest.setSingleShot(True)
@@ -100,7 +109,9 @@ class Viewport(Canvas):
             if grip is not None:
                 ((x, y),) = self.project(np.array([grip.position]))
                 offset = QPointF(x, y) - at
-            self._press = _Press(at, QMouseEvent(event), grip, offset)
+            ended = self._drag_ended
+            stray = ended is not None and 0 <= event.timestamp() - ended < AFTER_DRAG_MS
+            self._press = _Press(at, QMouseEvent(event), grip, offset, stray=stray)
             return
         self._pass_on(event, QEvent.Type.MouseButtonPress, Qt.MouseButton.MiddleButton)
 
@@ -122,6 +133,9 @@ class Viewport(Canvas):
         stays = grip is None or fixed or self.tool is not None
         if stays and not press.dragging:
             self._press = None
+            if press.event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+                self._is_alone = True
+                self.turning_alone.emit(True)
             self._pass_on(press.event, QEvent.Type.MouseButtonPress, Qt.MouseButton.LeftButton)
             super().mouseMoveEvent(event)
             return
@@ -149,13 +163,26 @@ class Viewport(Canvas):
         if press is None:
             if self._passing is not None:
                 self._pass_on(event, QEvent.Type.MouseButtonRelease, self._passing)
+                self._drag_ended = event.timestamp()
+                if self._is_alone:
+                    self._is_alone = False
+                    self.turning_alone.emit(False)
             return
         if event.button() != Qt.MouseButton.LeftButton:
             return
         self._press = None
         grip = press.grip
+        if press.dragging:
+            self._drag_ended = event.timestamp()
+        elif press.stray:
+            self.stray_clicked.emit()
+            return
+        with_shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
         if self.tool is not None and not press.dragging:
             self.tool.click(self, press.at, press.twice)
+        elif with_shift and not press.dragging:
+            # Also onto another landmark: the selected one is meant, wherever it is.
+            self.surface_shift_clicked.emit(self.pick(press.at, OUTLINE_REACH))
         elif isinstance(grip, CurveHandle):
             done = self.handle_dropped if press.dragging else self.handle_clicked
             done.emit(grip.curve, grip.number)
@@ -190,8 +217,10 @@ class Viewport(Canvas):
         self._passing = button if pressed else None
         self.set_orbiting(pressed)
         held = button if pressed else Qt.MouseButton.NoButton
+        # With Ctrl VTK would spin instead of turn.
+        modifiers = Qt.KeyboardModifier.NoModifier if self._is_alone else event.modifiers()
         replayed = QMouseEvent(
-            kind, event.position(), event.globalPosition(), button, held, event.modifiers()
+            kind, event.position(), event.globalPosition(), button, held, modifiers
         )
         if pressed:
             super().mousePressEvent(replayed)

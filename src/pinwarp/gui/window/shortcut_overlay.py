@@ -13,6 +13,7 @@ Lines = list[tuple[str, str]]
 _MOUSE: Lines = [
     ("Click on a bone", "place the landmark that is asked for, or a new one"),
     ("Ctrl+click on the source", "add a passenger"),
+    ("Shift+click on a bone", "put the selected landmark there"),
     ("Click a landmark", "select it everywhere"),
     ("Drag a landmark", "slide it over the bone (Esc puts it back)"),
     ("Shift+drag a landmark", "move it in the view plane, off the bone"),
@@ -20,6 +21,7 @@ _MOUSE: Lines = [
     ("Drag a handle of a curve", "shape it; onto a landmark anchors it there"),
     ("Arrow keys", "nudge the selection (Shift: ten times as far)"),
     ("Drag, wheel, right drag", "orbit, zoom, pan"),
+    ("Ctrl+drag", "turn this bone alone"),
     ("Drop files on a bone", "open meshes, landmarks, sessions"),
 ]
 _COLUMNS = 2
