@@ -27,6 +27,7 @@ from pinwarp.session.outputs.exports import (
     warped_passengers,
 )
 from pinwarp.session.outputs.script import script_of
+from pinwarp.session.signals import isolated
 from pinwarp.session.warp.provenance import provenance
 from pinwarp.session.warp.refined import warp_in_words
 from pinwarp.session.warp.slid_words import not_sliding_note, semilandmarks_in_words
@@ -34,7 +35,7 @@ from pinwarp.session.warp.solved import SolvedWarp, solved
 
 
 class Exports(Capability):
-    """Asks for a file and writes.
+    """Asks for a file and writes; ``exported`` emits where a warped mesh went.
 
     Parameters
     ----------
@@ -43,6 +44,8 @@ class Exports(Capability):
     tasks
         Runs, asks and tells.
     """
+
+    exported = isolated(Path)
 
     def __init__(self, editor: Editor, tasks: FileTasks[Dialogs]) -> None:
         self._editor = editor
@@ -246,6 +249,8 @@ class Exports(Capability):
             write_mesh(path, mesh, replace(data, remarks=provenance(session)))
             return warp
 
-        self._tasks.run(
-            f"Exporting {path.name}", write, lambda warp: self._say_exported(path, warp)
-        )
+        def written(warp: SolvedWarp) -> None:
+            self._say_exported(path, warp)
+            self.exported.emit(path)
+
+        self._tasks.run(f"Exporting {path.name}", write, written)

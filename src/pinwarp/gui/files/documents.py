@@ -172,10 +172,10 @@ class Documents(Capability):
         """The sessions opened last that still exist, newest first."""
         return self._recent.paths
 
-    def open_sample(self) -> None:
-        """Open the sample bones as a new session, asking about unsaved work first."""
+    def open_sample(self, then: Callable[[], None] = lambda: None) -> None:
+        """Open the sample bones as a new session, asking about unsaved work first; as below."""
         if self._saving.may_lose_changes():
-            self.open_session(sample_session(), as_new=True)
+            self.open_session(sample_session(), as_new=True, then=then)
 
     def close_session(self) -> None:
         """Leave an empty window, asking about unsaved work first."""
@@ -315,8 +315,20 @@ class Documents(Capability):
         if path is not None:
             self.open_session(path)
 
-    def open_session(self, path: Path, *, as_new: bool = False) -> None:
-        """Open a session with its meshes; ``as_new`` forgets where it came from."""
+    def open_session(
+        self, path: Path, *, as_new: bool = False, then: Callable[[], None] = lambda: None
+    ) -> None:
+        """Open a session with its meshes.
+
+        Parameters
+        ----------
+        path
+            Its file.
+        as_new
+            Forget where it came from.
+        then
+            Called once it is there.
+        """
         # Saving to a backup would lose what it is kept for.
         as_new = as_new or is_backup(path)
         if not as_new and (other := self._window_with(path)) is not None:
@@ -345,6 +357,7 @@ class Documents(Capability):
                 self._editor.replace_all(session, path, sha256=sha256)
                 self._recent.add(path)
             self._tasks.said.emit(f"Opened {path.name}: {counted(len(session.pairs), 'pair')}")
+            then()
             return True
 
         self._meshes.open(record, path.parent, f"Opening {path.name}", arrived)

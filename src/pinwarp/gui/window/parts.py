@@ -40,6 +40,7 @@ from pinwarp.gui.semilandmarks.presenter import Semilandmarks
 from pinwarp.gui.suggesting.presenter import Suggesting
 from pinwarp.gui.table.presenter import TablePresenter
 from pinwarp.gui.tasks.file_tasks import FileTasks
+from pinwarp.gui.tour.presenter import Tour
 from pinwarp.gui.views.controls import ViewControls
 from pinwarp.gui.views.looks import Looks
 from pinwarp.gui.warp.grid import GridPresenter
@@ -179,6 +180,14 @@ class Parts:
             lambda: self.model.rows,
         )
         self.file_warping = FileWarping(editor, tasks)
+        self.tour = Tour(
+            editor,
+            self.exports,
+            source,
+            self.documents.open_sample,
+            lambda key: told(frame.actions_by_key[key], "keys").strip("*"),
+            say,
+        )
         self.user_guide = UserGuide(lambda key, what: told(frame.actions_by_key[key], what), frame)
         self.help = Help(
             dialogs, frame.faults, lambda: source.graphics, say, frame.toggle_shortcuts

@@ -1,0 +1,1 @@
+"""The tour: five steps on the sample bones that the user does."""
