@@ -20,6 +20,7 @@ from pinwarp.core.errors import words_of
 from pinwarp.gui.files.documents import Opening
 from pinwarp.gui.views.fast_view import default_format
 from pinwarp.gui.window.main_window import MainWindow
+from pinwarp.gui.window.text_size import remembered_size, write_in
 from pinwarp.gui.window.window_dialogs import WindowDialogs
 from pinwarp.io.atomic import sweep
 from pinwarp.io.samples import sample_session
@@ -155,6 +156,7 @@ def user_window(dialogs: WindowDialogs | None = None) -> MainWindow:
         state_folder: Path | None = platformdirs.user_state_path("pinwarp")
     except RuntimeError:
         state_folder = None
+    write_in(remembered_size(settings))
     window = MainWindow(settings, dialogs, state_folder)
     if problem:
         window.note("Settings are not remembered", problem)

@@ -121,6 +121,7 @@ class MapPanel(QWidget):
             column.addWidget(widget)
         column.addStretch()
         scroll = QScrollArea()
+        scroll.setAccessibleName("Figures of the map")
         scroll.setWidgetResizable(True)
         scroll.setFrameShape(QFrame.Shape.NoFrame)
         scroll.setWidget(inner)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-_FIELD = re.compile(r"\{([a-z_]+)((?:\.[a-z]+)?)\}")
+_FIELD = re.compile(r"\{([a-z_0-9]+)((?:\.[a-z]+)?)\}")
 _MARKS = re.compile(r"!\[([^\]]*)\]\([^)]*\)|\[([^\]]*)\]\([^)]*\)|[*`|#]")
 
 

@@ -31,6 +31,7 @@ from pinwarp.gui.painted.markers import (
     GHOST_RADIUS,
     HALO,
     STAR_RADIUS,
+    draw_crosshair,
     draw_ghost,
     draw_label,
     draw_label_below,
@@ -115,6 +116,7 @@ class MarkerLayer(QWidget):
             ToolWords: self._paint_tool_words,
         }
         self.painted_for: object = None
+        self._crosshair: QPointF | None = None
         self._dark = False
         # Where the scale bar begins.
         self._free_until = 0.0
@@ -216,12 +218,19 @@ class MarkerLayer(QWidget):
                 thing = self._scene.of(kind)
                 if thing is not None:
                     paint(painter, thing)
+            if self._crosshair is not None:
+                draw_crosshair(painter, self._crosshair)
             if self.is_bone_lost and self._scene.of(Hint) is None:
                 self._paint_hint(painter, Hint(_OUT_OF_SIGHT))
         points, model = self.semilandmarks, self._model
         points.is_resting = model.is_resting = False
         if points.is_stale or model.is_stale:
             self._again.start()
+
+    def show_crosshair(self, at: QPointF | None) -> None:
+        """Paint the crosshair that the arrow keys move; None takes it away."""
+        self._crosshair = at
+        self.update()
 
     def _on_rest(self) -> None:
         self.semilandmarks.is_resting = self._model.is_resting = True

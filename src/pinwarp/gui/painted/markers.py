@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 
-from qtpy.QtCore import QPointF, QRectF, Qt
+from qtpy.QtCore import QLineF, QPointF, QRectF, Qt
 from qtpy.QtGui import QBrush, QColor, QIcon, QPainter, QPen, QPixmap, QPolygonF
 
 from pinwarp.core.landmarks import LandmarkState
@@ -163,3 +163,15 @@ def _draw_plate(painter: QPainter, plate: QRectF, text: str) -> None:
     painter.drawRoundedRect(plate, 4, 4)
     painter.setPen(QColor(theme.INK))
     painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, text)
+
+
+def draw_crosshair(painter: QPainter, at: QPointF) -> None:
+    """Draw the crosshair that the arrow keys move, dark within light: seen on anything."""
+    inner, outer = 4.0, 16.0
+    lines = [
+        QLineF(at + QPointF(x * inner, y * inner), at + QPointF(x * outer, y * outer))
+        for x, y in ((1, 0), (-1, 0), (0, 1), (0, -1))
+    ]
+    for colour, width in ((theme.PAPER, 5.0), (theme.OUTLINE, 2.0)):
+        painter.setPen(QPen(QColor(colour), width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap))
+        painter.drawLines(lines)

@@ -87,6 +87,7 @@ class PenaltyPanel(QWidget):
         )
         self.plot = PenaltyPlot(self.slider, self)
         self.value = QLineEdit()
+        self.value.setAccessibleName("Warping penalty")
         self.value.setAlignment(Qt.AlignmentFlag.AlignRight)
         self.value.setFixedWidth(self.fontMetrics().horizontalAdvance("0.00000000") + 14)
         self.value.setToolTip("The exact penalty, a length in mesh units, or “affine”")

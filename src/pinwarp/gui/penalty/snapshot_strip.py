@@ -194,6 +194,7 @@ class SnapshotStrip(QScrollArea):
 
     def __init__(self, menu_actions: Sequence[QAction]) -> None:
         super().__init__()
+        self.setAccessibleName("Snapshots")
         self._menu = QMenu(self)
         self._menu.addActions(menu_actions)
         self.setFrameShape(QFrame.Shape.NoFrame)

@@ -49,6 +49,7 @@ class RefiningPanel(QScrollArea):
 
     def __init__(self, without: Action, remove: Action, check: Action, refine_key: str) -> None:
         super().__init__()
+        self.setAccessibleName("Refine to surface")
         self._range: FeatureRange | None = None
         self._is_busy = False
         self.feature = LengthField(

@@ -28,8 +28,8 @@ STATE_COLOURS = {
     LandmarkState.SOURCE_ONLY: "#D55E00",
     LandmarkState.DESTINATION_ONLY: "#D55E00",
     LandmarkState.PASSENGER: "#CC79A7",
-    LandmarkState.DISABLED: "#8b919a",
-    LandmarkState.EMPTY: "#8b919a",
+    LandmarkState.DISABLED: "#6f757e",
+    LandmarkState.EMPTY: "#6f757e",
 }
 SELECTED_COLOUR = "#F0E442"
 GHOST_COLOUR = "#0072B2"
@@ -48,7 +48,7 @@ FOLD_COLOUR = "#D55E00"
 MUSCLE_COLOUR = "#a3262a"
 MODEL_MARKER_COLOUR = "#0e7c86"
 WRAP_COLOUR = "#4a5fb5"
-AXIS_COLOURS = ("#c44a00", "#00805c", "#0072B2")
+AXIS_COLOURS = ("#c44a00", "#00703f", "#0072B2")
 
 # Maps of lengths: even steps of lightness from dark to light, told apart without red and green.
 SEQUENTIAL_COLOURS = (

@@ -33,6 +33,11 @@ _ARROWS = {
     Qt.Key.Key_Up: (0, 1),
     Qt.Key.Key_Down: (0, -1),
 }
+_ENTER = (Qt.Key.Key_Return, Qt.Key.Key_Enter)
+# Of the crosshair, in pixels; with Shift ten times as far.
+CROSSHAIR_STEP = 4
+# By which an arrow key with Ctrl turns the bone, in degrees, and a page key zooms.
+_TURN, _ZOOM = 15, 1.25
 
 
 @dataclass
@@ -60,6 +65,8 @@ class Viewport(Canvas):
     ----------
     tool : Tool or None
         What takes clicks before anybody else.
+    crosshair : QPointF or None
+        Where arrow keys have moved the crosshair that stands for the mouse.
     """
 
     surface_clicked = Signal(object)
@@ -77,13 +84,16 @@ class Viewport(Canvas):
     handle_dragged = Signal(str, int, object, str)
     handle_dropped = Signal(str, int)
     drag_cancelled = Signal()
+    crosshair_left = Signal(bool)
     hovered = Signal(object)
     files_dropped = Signal(list)
 
     def __init__(self, side: Side, surfaces: Surfaces, parent: QWidget | None = None) -> None:
         self._press: _Press | None = None
         super().__init__(side, surfaces, parent)
+        self.setAccessibleName(f"{side.value.capitalize()} bone")
         self.tool: Tool | None = None
+        self.crosshair: QPointF | None = None
         self._passing: Qt.MouseButton | None = None
         self._is_alone = False
         self._drag_ended: int | None = None
@@ -172,26 +182,39 @@ class Viewport(Canvas):
             return
         self._press = None
         grip = press.grip
-        if press.dragging:
-            self._drag_ended = event.timestamp()
-        elif press.stray:
-            self.stray_clicked.emit()
+        if not press.dragging:
+            if press.stray:
+                self.stray_clicked.emit()
+            else:
+                self._click(press.at, grip, event.modifiers(), press.twice)
             return
-        with_shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
-        if self.tool is not None and not press.dragging:
-            self.tool.click(self, press.at, press.twice)
-        elif with_shift and not press.dragging:
-            # Also onto another landmark: the selected one is meant, wherever it is.
-            self.surface_shift_clicked.emit(self.pick(press.at, OUTLINE_REACH))
-        elif isinstance(grip, CurveHandle):
-            done = self.handle_dropped if press.dragging else self.handle_clicked
-            done.emit(grip.curve, grip.number)
-        elif isinstance(grip, Ghost) and not press.dragging:
-            self.ghost_clicked.emit(grip.name, self.pick(press.at))
+        self._drag_ended = event.timestamp()
+        if isinstance(grip, CurveHandle):
+            self.handle_dropped.emit(grip.curve, grip.number)
         elif grip is not None:
-            (self.landmark_dropped if press.dragging else self.landmark_clicked).emit(grip.name)
-        elif (position := self.pick(press.at, OUTLINE_REACH)) is not None:
-            with_ctrl = bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
+            self.landmark_dropped.emit(grip.name)
+
+    def _click(
+        self,
+        at: QPointF,
+        grip: Marker | CurveHandle | Ghost | None,
+        modifiers: Qt.KeyboardModifier,
+        twice: bool,
+    ) -> None:
+        """Say what was clicked, by the mouse or at the crosshair."""
+        if self.tool is not None:
+            self.tool.click(self, at, twice)
+        elif modifiers & Qt.KeyboardModifier.ShiftModifier:
+            # Also onto another landmark: the selected one is meant, wherever it is.
+            self.surface_shift_clicked.emit(self.pick(at, OUTLINE_REACH))
+        elif isinstance(grip, CurveHandle):
+            self.handle_clicked.emit(grip.curve, grip.number)
+        elif isinstance(grip, Ghost):
+            self.ghost_clicked.emit(grip.name, self.pick(at))
+        elif grip is not None:
+            self.landmark_clicked.emit(grip.name)
+        elif (position := self.pick(at, OUTLINE_REACH)) is not None:
+            with_ctrl = bool(modifiers & Qt.KeyboardModifier.ControlModifier)
             (self.surface_ctrl_clicked if with_ctrl else self.surface_clicked).emit(position)
         else:
             self.background_clicked.emit()
@@ -261,13 +284,21 @@ class Viewport(Canvas):
             self.hovered.emit(None)
 
     def event(self, event: QEvent) -> bool:
-        """Claim Esc while a landmark is dragged, before the window's shortcut takes it."""
-        if (
-            event.type() == QEvent.Type.ShortcutOverride
-            and self._is_dragging
-            and event.key() == Qt.Key.Key_Escape
-        ):
-            event.accept()
+        """Claim keys that mean something here before the window's shortcuts take them.
+
+        Esc while a landmark is dragged; while there is a crosshair its keys, Tab among them.
+        """
+        kind = event.type()
+        if kind not in (QEvent.Type.ShortcutOverride, QEvent.Type.KeyPress):
+            return super().event(event)
+        key, has_crosshair = event.key(), self.crosshair is not None
+        if kind == QEvent.Type.ShortcutOverride:
+            ours = (Qt.Key.Key_Escape,) if self._is_dragging or has_crosshair else ()
+            if key in (*ours, *(_ENTER if has_crosshair else ())):
+                event.accept()
+                return True
+        elif has_crosshair and key in (Qt.Key.Key_Tab, Qt.Key.Key_Backtab):
+            self.crosshair_left.emit(True)
             return True
         return super().event(event)
 
@@ -277,15 +308,50 @@ class Viewport(Canvas):
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Cancel a drag with Esc; VTK's own keys (w, s, 3, p, ...) are not for our users."""
-        if event.key() == Qt.Key.Key_Escape and self._is_dragging:
+        key, modifiers = event.key(), event.modifiers()
+        if key == Qt.Key.Key_Escape and self._is_dragging:
             self._press = None
             self.drag_cancelled.emit()
-        elif event.key() in _ARROWS:
-            steps = 10 if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 1
-            across, upwards = _ARROWS[event.key()]
-            self.nudged.emit(across * steps, upwards * steps)
+        elif key in _ARROWS:
+            across, upwards = _ARROWS[key]
+            steps = 10 if modifiers & Qt.KeyboardModifier.ShiftModifier else 1
+            if modifiers & Qt.KeyboardModifier.ControlModifier:
+                self._turn(across, upwards)
+            elif self.crosshair is not None:
+                step = CROSSHAIR_STEP * steps
+                self.put_crosshair(self.crosshair + QPointF(across * step, -upwards * step))
+            else:
+                self.nudged.emit(across * steps, upwards * steps)
+        elif key in (Qt.Key.Key_PageUp, Qt.Key.Key_PageDown):
+            self.camera.Dolly(_ZOOM if key == Qt.Key.Key_PageUp else 1 / _ZOOM)
+            self.stay_in_reach()
+            self.renderer.ResetCameraClippingRange()
+            self.update()
+        elif self.crosshair is not None and key in _ENTER:
+            self._click(self.crosshair, self._grip(self.crosshair), modifiers, False)
+        elif self.crosshair is not None and key == Qt.Key.Key_Escape:
+            self.crosshair_left.emit(False)
         else:
             event.ignore()
+
+    def _turn(self, across: int, upwards: int) -> None:
+        """Turn the bone by the keyboard, as a drag of the mouse in that direction does."""
+        self.camera.Azimuth(-_TURN * across)
+        self.camera.Elevation(-_TURN * upwards)
+        self.camera.OrthogonalizeViewUp()
+        self.renderer.ResetCameraClippingRange()
+        self.update()
+
+    def put_crosshair(self, at: QPointF | None) -> None:
+        """Put the crosshair somewhere in the view, or take it away."""
+        if at is not None:
+            at = QPointF(
+                min(max(at.x(), 0.0), self.width() - 1.0), min(max(at.y(), 0.0), self.height() - 1)
+            )
+        self.crosshair = at
+        self.layer.show_crosshair(at)
+        if at is not None:
+            self._hover(at)
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
         """Keep VTK out of it."""

@@ -59,6 +59,7 @@ class WarpPanel(QScrollArea):
 
     def __init__(self, play: Action, grid_key: str) -> None:
         super().__init__()
+        self.setAccessibleName("Parts of the warp")
         self._session = Session()
         self._quality: Quality | None = None
         self.components = ComponentList()

@@ -174,8 +174,13 @@ class WindowFrame(QMainWindow):
         self.setTabPosition(RIGHT, QTabWidget.TabPosition.North)
         self._front = right[0]
         self._front.raise_()
-        # The table keeps the whole height of the right edge.
-        self.setCorner(Qt.Corner.BottomRightCorner, RIGHT)
+        # The table keeps the whole height of the right edge, unless large text needs the width.
+        below = [panel.widget for panel in panels if panel.area != RIGHT]
+        widest = max((widget.minimumSizeHint().width() for widget in below), default=0)
+        fits = widest + RIGHT_WIDTH <= SIZE.width()
+        self.setCorner(
+            Qt.Corner.BottomRightCorner, RIGHT if fits else Qt.DockWidgetArea.BottomDockWidgetArea
+        )
         self.resizeDocks([self._front], [RIGHT_WIDTH], Qt.Orientation.Horizontal)
         self._fit_docks()
         return docks

@@ -20,6 +20,7 @@ INNER = {
     "maps": ("Ma&ps", "View.13"),
     "grid": ("&Grid", "View.14"),
     "background": ("&Background", "View.33"),
+    "text_size": ("&Text Size", "View.34"),
     "sides": ("&Look From", "View.23"),
     "cameras": ("Ca&meras", "View.24"),
 }

@@ -31,6 +31,7 @@ from pinwarp.gui.penalty.comparison import PenaltyComparison
 from pinwarp.gui.penalty.snapshots import Snapshots
 from pinwarp.gui.penalty.tuning import PenaltyTuning
 from pinwarp.gui.placing.bone_edits import BoneEdits
+from pinwarp.gui.placing.crosshair import Crosshair
 from pinwarp.gui.placing.ghosts import Ghosts
 from pinwarp.gui.placing.guidance import Guidance
 from pinwarp.gui.placing.hand import Hand
@@ -51,6 +52,7 @@ from pinwarp.gui.warp.warps import Warps
 from pinwarp.gui.window.frame import WindowFrame
 from pinwarp.gui.window.help import Help
 from pinwarp.gui.window.menus import told
+from pinwarp.gui.window.text_size import TextSize
 from pinwarp.gui.window.undoing import Undoing
 from pinwarp.gui.window.window_dialogs import WindowDialogs
 from pinwarp.io.file_names import session_name
@@ -94,8 +96,10 @@ class Parts:
         self.shown_session = ShownSession(editor, scenes, self.warps, self.quality)
         self.views = ViewControls(editor, views, scenes, say, frame)
         self.looks = Looks(editor, views, frame.theme_changed, frame)
+        self.text_size = TextSize(settings, say, frame)
         self.ghosts = Ghosts(editor, self.warps, surfaces)
         self.hand = Hand(editor, views, self.ghosts, self.views)
+        self.crosshair = Crosshair(editor, self.ghosts, views)
         self.bones = BoneEdits(editor, say)
         self.guidance = Guidance(editor, self.hand, self.ghosts, tasks)
         self.reviewing = Reviewing(editor, self.hand, destination)

@@ -20,6 +20,8 @@ _MOUSE: Lines = [
     ("Click or drag a ghost", "make it the next one, or put it right"),
     ("Drag a handle of a curve", "shape it; onto a landmark anchors it there"),
     ("Arrow keys", "nudge the selection (Shift: ten times as far)"),
+    ("Ctrl+arrow keys, Page Up", "turn the bones, zoom"),
+    ("Enter, Tab at the crosshair", "click there, go to the other bone"),
     ("Drag, wheel, right drag", "orbit, zoom, pan"),
     ("Ctrl+drag", "turn this bone alone"),
     ("Drop files on a bone", "open meshes, landmarks, sessions"),
