@@ -179,3 +179,26 @@ def test_what_is_left_grows_from_the_full_warp_to_the_rigid_fit(femur):
     left = quality(session_of(source, destination, names)).rms_by_components
     order = (Components.FULL, Components.AFFINE, Components.SIMILARITY, Components.RIGID)
     assert [round(left[part], 1) for part in order] == [0.0, 11.0, 11.1, 29.6]
+
+
+@pytest.mark.parametrize(
+    ("places", "words"),
+    [
+        ([(0, 0, 0), (10, 0, 0), (0, 10, 0), (10, 10, 0)], "in one plane"),
+        ([(0, 0, 5), (10, 0, 5), (0, 10, 5), (10, 10, 5), (3, 4, 5)], "in one plane"),
+        ([(0, 0, 0), (10, 0, 0), (20, 0, 0), (30, 0, 0)], "on one line"),
+        ([(0, 0, 0), (10, 0, 0), (0, 10, 0)], ""),
+        ([(0, 0, 0), (10, 0, 0), (0, 10, 0), (0, 0, 10)], ""),
+    ],
+)
+def test_pairs_that_leave_a_direction_open_are_told_from_the_fourth_on(places, words):
+    marks = tuple(
+        Landmark(f"p{i}", place, tuple(1.1 * x for x in place)) for i, place in enumerate(places)
+    )
+    session = Session(landmarks=marks)
+    result = WarpSolver().solve(WarpInputs.of(session))
+    told = [x.sentence for x in quality_of(result).findings_in(session)]
+    assert len(told) == bool(words)
+    assert all(words in sentence and "Place one off" in sentence for sentence in told)
+    if len(places) == 4:
+        assert result.flexibility is None, "nothing can bend, so nothing is 100 % flexible"

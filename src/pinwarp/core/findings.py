@@ -25,6 +25,7 @@ class Severity(IntEnum):
 
 # A chance smaller than one in so many is no better known.
 RAREST = 1000
+_ON_LINE = ("on one line", "the line")
 # Of more landmarks than this a sentence names the first, and says how many more there are.
 MOST_NAMED = 4
 
@@ -41,6 +42,7 @@ class FindingKind(StrEnum):
     CONFLICT = "conflict"
     CLOSE = "close"
     NEARLY_PLANAR = "nearly planar"
+    PLANAR = "planar"
     POLE = "pole"
     FOLD = "fold"
     MIRRORED = "mirrored"
@@ -61,6 +63,7 @@ class FindingKind(StrEnum):
             case (
                 FindingKind.CLOSE
                 | FindingKind.NEARLY_PLANAR
+                | FindingKind.PLANAR
                 | FindingKind.POLE
                 | FindingKind.SUGGESTED
             ):
@@ -82,7 +85,8 @@ class Finding:
     value
         The figure that goes with it: for a conflict the largest distance on the destination, for
         close landmarks the smallest on the source (mesh units), for nearly planar landmarks the
-        ratio of the smallest to the largest extent, for a pole its penalty (mesh units), for a
+        ratio of the smallest to the largest extent, for planar ones how many directions they span,
+        for a pole its penalty (mesh units), for a
         fold the number of its vertices. For swapped or displaced pairs, either of two and what is
         worth a look, the chance that a set without a mistake shows as much; for an isolated
         landmark the distance to the nearest; for a mirrored set what a reflection leaves of the
@@ -146,6 +150,12 @@ class Finding:
                 return (
                     "The source landmarks lie nearly in one plane: "
                     "far from the landmarks the warp is unreliable."
+                )
+            case FindingKind.PLANAR:
+                where, off = ("in one plane", "the plane") if self.value > 1 else _ON_LINE
+                return (
+                    f"The source landmarks lie {where}: off it they say nothing, and the warp is "
+                    f"only moved, turned and sized there. Place one off {off}."
                 )
             case FindingKind.POLE:
                 return (

@@ -36,6 +36,7 @@ Matrix = NDArray[np.float64]
 
 # With fewer there is nothing to leave out: an affine map meets four.
 LEAST_PAIRS = 5
+_DIRECTIONS = 3
 
 
 @dataclass(frozen=True)
@@ -218,12 +219,20 @@ def _judged(result: WarpResult, judge: bool) -> Quality | None:
         left_out=left_out,
         curve=curve,
         judgement=judgement,
-        noticed=spline.findings,
+        noticed=(*_about_plane(factor, inputs), *spline.findings),
         affine=decompose(fit.affine, factor.centre),
         energy=bending_energy(spline),
         rms_by_components=_rms_by_components(result, spline, fit),
         rank=factor.rank,
     )
+
+
+def _about_plane(factor: SourceFactor, inputs: WarpInputs) -> tuple[Finding, ...]:
+    """Say that the landmarks leave directions open, where there are enough to settle them all."""
+    pairs = len(inputs.source)
+    if factor.rank == _DIRECTIONS or pairs <= _DIRECTIONS or inputs.settings.planar:
+        return ()
+    return (Finding(FindingKind.PLANAR, (), factor.rank),)
 
 
 def _while_others_slide(alone: LeaveOneOut, at_rest: SlidGroups, penalty: float) -> LeaveOneOut:

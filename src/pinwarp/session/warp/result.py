@@ -22,6 +22,10 @@ from pinwarp.session.warp.sliding import SlidGroups, SlidingInputs
 Matrix = NDArray[np.float64]
 
 
+# So many pairs an affine map meets.
+_MET_BY_AFFINE = 4
+
+
 @dataclass(frozen=True)
 class WarpInputs:
     """All that a warp depends on, and nothing that it does not (such as names)."""
@@ -138,6 +142,9 @@ class WarpResult:
     def flexibility(self) -> float | None:
         """Share of non-affine freedom left; None where the penalty has nothing to act on."""
         if self.factor is None or not self.factor.has_modes or not len(self.factor.poles):
+            return None
+        # Four can only bend if they lie in a plane, off which they say nothing.
+        if len(self.inputs.source) <= _MET_BY_AFFINE:
             return None
         if not self.inputs.settings.is_regular:
             return None
