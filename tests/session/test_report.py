@@ -6,8 +6,12 @@ from datetime import datetime
 
 import numpy as np
 
+from pinwarp.core.landmarks import Side, as_position
+from pinwarp.io.report import write_report
 from pinwarp.io.samples import sample_session
 from pinwarp.session import edits
+from pinwarp.session.judging.check import check
+from pinwarp.session.judging.quality import judged_at
 from pinwarp.session.judging.report import report_of
 from pinwarp.session.keeping.files import read_session
 from pinwarp.session.warp.result import WarpInputs
@@ -60,3 +64,36 @@ def test_without_meshes_there_are_no_distances_but_all_else():
     assert values(report, "maximum") == {}
     assert np.isfinite(list(values(report, "left out").values())).all()
     assert "not found" in dict(report.facts)["Source mesh"]
+
+
+def noisy(scale):
+    """Return the sample with destinations that are some millimetres off."""
+    session, random = read_session(sample_session()), np.random.default_rng(3)
+    for pair in session.pairs:
+        place = as_position(np.add(pair.destination, random.normal(scale=scale, size=3)))
+        session = edits.move(session, pair.name, Side.DESTINATION, place)
+    return session
+
+
+def test_the_chart_shades_the_penalties_that_do_as_well_and_says_so():
+    report = reported(noisy(1.5))
+    assert "does as well" in dict(report.remarks)["Warping penalty"]
+    assert "shaded" in dict(report.remarks)["Warping penalty"]
+    assert 'fill-opacity="0.12"' in report.chart
+    plain = reported(read_session(sample_session()))
+    assert 'fill-opacity="0.12"' not in plain.chart
+
+
+def test_where_pairs_are_judged_at_another_penalty_report_check_and_list_say_at_which(tmp_path):
+    session = edits.set_penalty(noisy(1.5), 2.5)
+    words = judged_at(session.settings, "mm")
+    assert "judged at penalty 0, not at 2.5 mm" in words
+    report = reported(session)
+    assert dict(report.remarks)["To check"] == words
+    assert words in check(session).notes
+    path = tmp_path / "a.html"
+    write_report(path, report)
+    assert words in path.read_text("utf-8")
+    # What is found does not depend on the penalty of the warp.
+    assert report.findings == reported(noisy(1.5)).findings
+    assert dict(reported(noisy(1.5)).remarks)["To check"] == ""

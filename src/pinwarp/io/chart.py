@@ -44,6 +44,15 @@ class Mark:
     colour: str = ""
 
 
+@dataclass(frozen=True)
+class Band:
+    """A part of the x axis, shaded over the whole height."""
+
+    low: float
+    high: float
+    colour: str
+
+
 def line_chart(
     lines: Sequence[Line],
     *,
@@ -52,6 +61,7 @@ def line_chart(
     x_ticks: Sequence[tuple[float, str]],
     highest: float | None = None,
     marks: Sequence[Mark] = (),
+    band: Band | None = None,
     size: tuple[int, int] = (720, 300),
 ) -> str:
     """Draw lines over an x axis with given ticks; y begins at 0.
@@ -68,6 +78,8 @@ def line_chart(
         Where y ends; without it at the highest value. Lines leave the picture there.
     marks
         Vertical lines.
+    band
+        What is shaded behind all.
     size
         Width and height in pixels.
 
@@ -113,6 +125,11 @@ def line_chart(
     clip = ET.SubElement(ET.SubElement(svg, "clipPath", id="plot"), "rect")
     plot = {"x": left, "y": top, "width": width - left - right, "height": height - top - bottom}
     clip.attrib.update({key: f"{value:g}" for key, value in plot.items()})
+    if band is not None:
+        ends = [min(max(x, low), high) for x in sorted((band.low, band.high))]
+        shade = plot | {"x": across(ends[0]), "width": across(ends[1]) - across(ends[0])}
+        look = {key: f"{value:.1f}" for key, value in shade.items()}
+        ET.SubElement(svg, "rect", look | {"fill": band.colour, "fill-opacity": "0.12"})
     for y in steps:
         _rule(svg, left, up(y), width - right, up(y), GRID)
         _text(svg, left - 8, up(y) + 4, f"{y:g}", anchor="end")

@@ -127,7 +127,9 @@ def write_report(path: str | Path, report: Report, pictures: Sequence[Picture] =
         data = base64.b64encode(picture.png).decode("ascii")
         ET.SubElement(figure, "img", src=f"data:image/png;base64,{data}", alt=picture.caption)
         ET.SubElement(figure, "figcaption").text = picture.caption
+    remarks = dict(report.remarks)
     _heading(body, "To check")
+    _add_remark(body, remarks.get("To check"))
     if report.findings:
         bullets = ET.SubElement(body, "ul")
         for finding in report.findings:
@@ -136,14 +138,13 @@ def write_report(path: str | Path, report: Report, pictures: Sequence[Picture] =
         ET.SubElement(body, "p").text = "Nothing stands out."
     if report.chart:
         _heading(body, "Warping penalty")
+        _add_remark(body, remarks.get("Warping penalty"))
         # Inside HTML an <svg> has no namespace of its own; ElementTree would prefix every tag.
         chart = report.chart.replace(f' xmlns="{SVG}"', "", 1)
         ET.SubElement(body, "div").append(ET.fromstring(chart))
-    remarks = dict(report.remarks)
     for section in dict.fromkeys(figure.section for figure in report.figures):
         _heading(body, section)
-        if section in remarks:
-            ET.SubElement(body, "p", {"class": "quiet"}).text = remarks[section]
+        _add_remark(body, remarks.get(section))
         _add_table(body, [figure for figure in report.figures if figure.section == section])
     if report.methods:
         _heading(body, "Methods")
@@ -180,6 +181,11 @@ def write_figures(path: str | Path, figures: Sequence[ReportRow]) -> None:
 
 def _heading(body: ET.Element, text: str) -> None:
     ET.SubElement(body, "h2").text = text
+
+
+def _add_remark(body: ET.Element, words: str | None) -> None:
+    if words:
+        ET.SubElement(body, "p", {"class": "quiet"}).text = words
 
 
 def _add_facts(body: ET.Element, facts: Sequence[tuple[str, str]]) -> None:

@@ -254,6 +254,10 @@ class FindingsPanel(QWidget):
         self.more = QLabel()
         self.more.setContentsMargins(6, 4, 4, 4)
         self._column.addWidget(self.more)
+        self.judged = QLabel(wordWrap=True)
+        self.judged.setContentsMargins(6, 4, 4, 4)
+        theme.make_quiet(self.judged)
+        self._column.addWidget(self.judged)
         self.scroll = QScrollArea()
         self.scroll.setWidgetResizable(True)
         self.scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
@@ -274,7 +278,9 @@ class FindingsPanel(QWidget):
         """The rows that are filled, from the top."""
         return self._rows[: min(len(self._found), MOST_ROWS)]
 
-    def show_findings(self, found: Sequence[NamedFinding], mirror_axis: str = "") -> None:
+    def show_findings(
+        self, found: Sequence[NamedFinding], mirror_axis: str = "", judged: str = ""
+    ) -> None:
         """Show these findings.
 
         Parameters
@@ -283,9 +289,13 @@ class FindingsPanel(QWidget):
             The gravest first; beyond the first 50 only their number is told.
         mirror_axis
             Across which axis the source can be mirrored, if it is asked for.
+        judged
+            At which penalty the pairs were judged, where that has to be said.
         """
-        if (tuple(found), mirror_axis) == (self._found, self._axis):
+        if (tuple(found), mirror_axis, judged) == (self._found, self._axis, self.judged.text()):
             return
+        self.judged.setText(judged)
+        self.judged.setVisible(bool(judged))
         self._found, self._axis = tuple(found), mirror_axis
         shown = self._found[:MOST_ROWS]
         while len(self._rows) < len(shown):

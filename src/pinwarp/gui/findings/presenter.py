@@ -25,13 +25,21 @@ from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.importing.fit import fitted
 from pinwarp.session.judging.elsewhere import Elsewhere, MeshGuard
-from pinwarp.session.judging.quality import NamedFinding, Quality, named_findings
+from pinwarp.session.judging.quality import NamedFinding, Quality, judged_at, named_findings
 from pinwarp.session.judging.suggested import about_suggested
 from pinwarp.session.naming import in_words
 from pinwarp.session.session import Session
 from pinwarp.session.warp.pair_names import pair_names
 
 # These are about the penalty and the solve, and told where the penalty is set.
+# What the pairs say about one another, at penalty 0.
+_OF_PAIRS = (
+    FindingKind.DISPLACED,
+    FindingKind.EITHER,
+    FindingKind.SWAPPED,
+    FindingKind.MIRRORED,
+    FindingKind.WORTH_A_LOOK,
+)
 _TOLD_ELSEWHERE = (FindingKind.NEARLY_PLANAR, FindingKind.POLE)
 
 
@@ -170,7 +178,8 @@ class FindingsPresenter(Capability):
         judged = survey.result.inputs if survey is not None else None
         places = (judged.source, judged.destination) if judged is not None else None
         astray = self._astray
-        key = (session.landmarks, session.unit, session.source, quality, folds, places, astray)
+        about = (session.settings.penalty, session.unit, session.source)
+        key = (session.landmarks, about, quality, folds, places, astray)
         if key == self._shown_for:
             return
         self._shown_for = key
@@ -184,7 +193,9 @@ class FindingsPresenter(Capability):
             # What is suggested has its sign as a state.
             [one for one in self._found if one.finding.kind is not FindingKind.SUGGESTED]
         )
-        self.panel.show_findings(self._found, self._mirror_axis(quality))
+        judged_pairs = any(one.finding.kind in _OF_PAIRS for one in self._found)
+        words = judged_at(session.settings, session.unit) if judged_pairs else ""
+        self.panel.show_findings(self._found, self._mirror_axis(quality), words)
         self.panel.show_selection(self._editor.selection.names)
         self._next.renew()
 
@@ -258,7 +269,7 @@ class FindingsPresenter(Capability):
         )
         self._say(
             f"The dashed arrow starts where the other pairs expect {name}: "
-            "drag it where it belongs, on either bone."
+            "drag it where it belongs, on either bone, or Shift+click there."
         )
 
     def _disable(self, found: NamedFinding, names: Sequence[str]) -> None:

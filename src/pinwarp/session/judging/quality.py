@@ -25,6 +25,7 @@ from pinwarp.core.quality import (
     leave_one_out,
     penalty_curve,
 )
+from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import Spline, solve
 from pinwarp.core.suspects import suspects
 from pinwarp.session.session import Session
@@ -134,6 +135,22 @@ class Quality:
         'a and b lie at the same place on the source but 2 mm apart on the destination.'
         """
         return named_findings(self.findings, self.inputs, session)
+
+
+def judged_at(settings: WarpSettings, unit: str = "") -> str:
+    """Say at which penalty pairs are judged where that is another than the warp's; else nothing.
+
+    Examples
+    --------
+    >>> judged_at(WarpSettings(2.5), "mm")
+    'Which pairs look wrong is judged at penalty 0, not at 2.5 mm, which spreads an error.'
+    >>> judged_at(WarpSettings())
+    ''
+    """
+    if settings.penalty == 0:
+        return ""
+    own = "infinity" if math.isinf(settings.penalty) else f"{settings.penalty:.4g} {unit}".rstrip()
+    return f"Which pairs look wrong is judged at penalty 0, not at {own}, which spreads an error."
 
 
 def named_findings(

@@ -15,14 +15,14 @@ from pinwarp.core.landmarks import Side
 from pinwarp.core.model_rows import ElementRow, counts
 from pinwarp.core.quality import PenaltyCurve
 from pinwarp.core.surface_distance import SurfaceComparison
-from pinwarp.io.chart import Line, Mark, line_chart
+from pinwarp.io.chart import Band, Line, Mark, line_chart
 from pinwarp.io.meshes import MeshFile
 from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.io.report import Report, ReportRow
 from pinwarp.session.judging.check import groups_of
 from pinwarp.session.judging.elsewhere import elsewhere
 from pinwarp.session.judging.methods import methods_of
-from pinwarp.session.judging.quality import Quality, quality_of
+from pinwarp.session.judging.quality import Quality, judged_at, penalty_advice, quality_of
 from pinwarp.session.judging.suggested import about_suggested
 from pinwarp.session.session import Session
 from pinwarp.session.warp.provenance import session_hash
@@ -113,6 +113,8 @@ def report_of(
             *_of_model(elements),
         ),
         remarks=(
+            ("To check", judged_at(session.settings, unit)),
+            ("Warping penalty", _advice(quality.curve, unit)),
             (
                 "Pairs",
                 "Residual: how far the warped source landmark is from its destination. "
@@ -284,6 +286,13 @@ def _of_warp(quality: Quality, unit: str) -> list[ReportRow]:
     return figures
 
 
+def _advice(curve: PenaltyCurve | None, unit: str) -> str:
+    """Say how much the suggested penalty matters, and what is shaded."""
+    if curve is None or not (words := penalty_advice(curve, unit)):
+        return ""
+    return words if curve.as_good is None else f"{words} That range is shaded."
+
+
 def _chart(curve: PenaltyCurve, session: Session, result: WarpResult) -> str:
     """Draw the curve on the slider's scale: what flexibility is given up."""
     stiff = (100 * (1 - curve.flexibility)).tolist()
@@ -294,6 +303,14 @@ def _chart(curve: PenaltyCurve, session: Session, result: WarpResult) -> str:
         marks.append(Mark(at, words, SUGGESTED_COLOUR))
     elif result.flexibility is not None:
         marks.append(Mark(100 * (1 - result.flexibility), "this warp"))
+    band = None
+    if curve.as_good is not None:
+        # Infinity is the affine fit, where nothing bends.
+        low, high = (
+            100.0 if math.isinf(x) else float(np.interp(x, curve.penalties, stiff))
+            for x in curve.as_good
+        )
+        band = Band(low, high, SUGGESTED_COLOUR)
     return line_chart(
         [
             Line("leave-one-out error", LEFT_OUT_COLOUR, stiff, curve.leave_one_out.tolist()),
@@ -303,4 +320,5 @@ def _chart(curve: PenaltyCurve, session: Session, result: WarpResult) -> str:
         y_title=f"RMS ({session.unit})",
         x_ticks=[(float(x), f"{100 - x} %") for x in (0, 20, 40, 60, 80, 100)],
         marks=marks,
+        band=band,
     )
