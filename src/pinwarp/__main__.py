@@ -25,6 +25,7 @@ def _open_window(
     destination: Path | None,
     source_landmarks: Path | None,
     destination_landmarks: Path | None,
+    passengers: Path | None,
     demo: bool,
     screenshot: Path | None,
 ) -> int:
@@ -40,7 +41,8 @@ def _open_window(
     from pinwarp.gui.app import run
     from pinwarp.gui.files.documents import Opening
 
-    opening = Opening(session, source, destination, source_landmarks, destination_landmarks, model)
+    landmarks = (source_landmarks, destination_landmarks)
+    opening = Opening(session, source, destination, *landmarks, model, passengers)
     return run(opening, demo=demo, screenshot=screenshot)
 
 

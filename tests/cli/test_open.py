@@ -25,6 +25,14 @@ def test_a_session_opens_in_the_window(pinwarp_command, study):
     assert pinwarp_command.opened == [{"session": study / "study.pinwarp.csv"}]
 
 
+def test_passengers_open_with_a_session_and_with_meshes(pinwarp_command, study):
+    marks, session = study / "source.csv", study / "study.pinwarp.csv"
+    pinwarp_command(session, "--passengers", marks)
+    assert pinwarp_command.opened == [{"session": session, "passengers": marks}]
+    outcome = pinwarp_command("--demo", "--passengers", marks, exit_code=2)
+    assert "give no files with it" in outcome.stderr
+
+
 def test_a_first_word_that_is_no_command_is_a_file(pinwarp_command):
     outcome = pinwarp_command("wrap", exit_code=2)
     assert "wrap does not exist. It is no command either" in outcome.stderr

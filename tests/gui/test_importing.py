@@ -24,7 +24,7 @@ from pinwarp.session.importing.fit import Fit
 from pinwarp.session.importing.landmarks import Pairing
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
-BY_NAME, BY_ORDER, AS_NEW = Pairing
+BY_NAME, BY_ORDER, AS_NEW, AS_PASSENGERS = Pairing
 OK, CANCEL = QDialogButtonBox.StandardButton.Ok, QDialogButtonBox.StandardButton.Cancel
 LPS = Fit(flips=True)
 IN_METRES, IN_MILLIMETRES = Fit(factor=0.001), Fit(factor=1000.0)
@@ -248,11 +248,15 @@ def test_a_file_dropped_with_another_waits_until_that_one_is_decided(half_done, 
         half_done.qtbot.wait(50)
         press(dialog)
 
-    half_done.dialogs.at_import = [import_first]
+    def import_second(dialog):
+        seen.append(happenings(dialog)[0])
+        press(dialog)
+
+    half_done.dialogs.at_import = [import_first, import_second]
     drop(half_done.window.viewports[DESTINATION], *paths)
     half_done.settle()
-    # Nobody waits for the second any more: all its names are new, which needs no question.
-    assert seen == [f"pairs with {half_done.pairs[0].name}"]
+    # Nobody waits for the second any more: all its names are new.
+    assert seen == [f"pairs with {half_done.pairs[0].name}", "new"]
     assert len(half_done.session.landmarks) == 32
     assert half_done.session.landmark("second-3").source is None
 
@@ -667,3 +671,58 @@ def test_what_may_be_no_landmarks_is_asked_about_before_it_comes_in(half_done, t
     half_done.trigger("import_destination")
     half_done.settle()
     assert half_done.dialogs.at_import == []
+
+
+# Passengers
+
+
+def stations():
+    return [Landmark(f"station_{i}", (10.0 * i, 5.0, 200.0)) for i in range(3)]
+
+
+def test_stations_come_in_as_passengers_where_everything_is_paired(user, bring):
+    user.open_sample()
+    before = user.session
+
+    def look(dialog):
+        assert dialog.pairings[AS_PASSENGERS].isChecked()
+        assert set(happenings(dialog)) == {"a new passenger"}
+        press(dialog)
+
+    bring(stations(), SOURCE, look)
+    assert [x.name for x in user.session.passengers[-3:]] == [f"station_{i}" for i in range(3)]
+    assert user.session.pairs == before.pairs
+    user.trigger("undo")
+    assert user.session == before
+
+
+def test_unknown_names_are_no_halves_unless_somebody_says_so(user, bring):
+    user.open_sample()
+    before = user.session
+    bring(stations(), SOURCE, lambda dialog: dialog.reject())
+    assert user.session == before
+
+    def as_new(dialog):
+        choose(dialog.pairings[AS_NEW])
+        press(dialog)
+
+    bring(stations(), SOURCE, as_new)
+    assert [x.is_pair for x in user.session.landmarks[-3:]] == [False] * 3
+    assert user.session.passengers == before.passengers
+
+    def look(dialog):
+        assert not dialog.pairings[AS_PASSENGERS].isEnabled()
+        dialog.reject()
+
+    user.editor.replace_all(before, None)
+    bring([x.placed(DESTINATION, x.source) for x in stations()], DESTINATION, look)
+    assert user.session == before
+
+
+def test_the_command_line_opens_a_session_with_passengers(user, tmp_path):
+    path = tmp_path / "stations.csv"
+    write_landmarks(path, stations(), SOURCE, unit="mm")
+    user.window.parts.documents.open(Opening(session=sample_session(), passengers=path))
+    user.settle()
+    assert len(user.session.pairs) == 16
+    assert [x.name for x in user.session.passengers[-3:]] == [f"station_{i}" for i in range(3)]

@@ -15,6 +15,7 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.io.landmark_files import LandmarkReading, SkippedLine
 from pinwarp.io.meshes import MeshFile
+from pinwarp.session import edits
 from pinwarp.session.importing.asking import doubts_of, is_plain
 from pinwarp.session.importing.fit import Fit, fits_of
 from pinwarp.session.importing.landmarks import (
@@ -33,7 +34,7 @@ from pinwarp.session.naming import free_names
 from pinwarp.session.session import Session
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
-BY_NAME, BY_ORDER, AS_NEW = Pairing
+BY_NAME, BY_ORDER, AS_NEW, AS_PASSENGERS = Pairing
 
 
 def placed(names, side=SOURCE, shift=0.0):
@@ -264,7 +265,8 @@ def test_a_name_that_only_looks_like_one_of_the_session_is_told_and_asked_about(
     arriving = file([Landmark("fovea\u200b", None, (7, 8, 9))])
     assert words(session, arriving, Pairing.BY_NAME) == ["new, though it looks like fovea"]
     assert not is_plain(session, arriving)
-    assert is_plain(session, file([Landmark("head", None, (7, 8, 9))]))
+    fresh = Session(landmarks=session.landmarks[:0])
+    assert is_plain(fresh, file([Landmark("head", None, (7, 8, 9))]))
 
 
 def test_what_a_file_says_of_a_landmark_comes_in_with_a_new_one_only():
@@ -292,3 +294,56 @@ def test_many_landmarks_of_which_few_lie_near_the_mesh_are_doubted():
     assert not is_plain(session, arriving)
     few = replace(arriving, reading=LandmarkReading(tuple(marks[:9]), False, ()))
     assert doubts_of(session, few) == ()
+
+
+# Passengers, and what is known of nobody
+
+
+def paired(count=4):
+    places = [(float(i), float(i * i), 1.0) for i in range(count)]
+    return Session(landmarks=tuple(Landmark(f"p{i}", x, x) for i, x in enumerate(places)))
+
+
+def stations(*names, side=Side.SOURCE):
+    marks = tuple(Landmark(name).placed(side, (float(i), 2.0, 3.0)) for i, name in enumerate(names))
+    return Arriving(Path("stations.csv"), LandmarkReading(marks, False, ()), side)
+
+
+def test_unknown_names_on_a_paired_source_are_proposed_as_passengers_and_asked_about():
+    session, file = paired(), stations("glut_med", "iliopsoas")
+    assert default_pairing(session, file) is Pairing.AS_PASSENGERS
+    assert not is_plain(session, file)
+    found = arrivals(session, file, ImportChoice(Pairing.AS_PASSENGERS))
+    assert [x.words for x in found] == ["a new passenger", "a new passenger"]
+    after = imported(session, file, ImportChoice(Pairing.AS_PASSENGERS))
+    assert [x.name for x in after.passengers] == ["glut_med", "iliopsoas"]
+    assert after.pairs == session.pairs
+
+
+def test_unknown_names_on_a_paired_destination_are_asked_about_and_never_passengers():
+    session, file = paired(), stations("a", "b", side=Side.DESTINATION)
+    assert default_pairing(session, file) is Pairing.BY_NAME
+    assert not is_plain(session, file)
+    assert not can_pair(session, file, Pairing.AS_PASSENGERS)
+
+
+def test_the_first_landmarks_of_a_session_come_in_without_a_question():
+    assert is_plain(Session(), stations("a", "b"))
+    assert default_pairing(Session(), stations("a", "b")) is Pairing.BY_NAME
+
+
+def test_a_passenger_that_is_there_gets_its_place_and_a_pair_of_that_name_stays_a_pair():
+    session = edits.add_passenger(paired(), (9.0, 9.0, 9.0))[0]
+    name = session.passengers[0].name
+    file = stations(name, "p1", "glut_med")
+    after = imported(session, file, ImportChoice(Pairing.AS_PASSENGERS))
+    assert after.landmark(name).source == (0.0, 2.0, 3.0)
+    assert after.landmark("p1") == session.landmark("p1")
+    assert len(after.passengers) == 3
+    assert len({x.name for x in after.landmarks}) == len(after.landmarks)
+
+
+@pytest.mark.parametrize("half", [Side.SOURCE, Side.DESTINATION])
+def test_where_something_waits_nothing_is_taken_for_passengers(half):
+    session = edits.remove_side(paired(), "p2", half)
+    assert default_pairing(session, stations("x", "y", "z")) is not Pairing.AS_PASSENGERS

@@ -24,6 +24,7 @@ class OpenWindow(Protocol):
         destination: Path | None,
         source_landmarks: Path | None,
         destination_landmarks: Path | None,
+        passengers: Path | None,
         demo: bool,
         screenshot: Path | None,
     ) -> int:
@@ -49,6 +50,12 @@ def make_open(open_window: OpenWindow) -> Callable[..., None]:
         destination_landmarks: Annotated[
             Path | None, typer.Option(metavar="FILE", help="Landmarks on the destination mesh.")
         ] = None,
+        passengers: Annotated[
+            Path | None,
+            typer.Option(
+                metavar="FILE", help="Landmarks on the source mesh to be carried, not solved for."
+            ),
+        ] = None,
         demo: Annotated[bool, typer.Option("--demo", help="Open the sample bones.")] = False,
         screenshot: Annotated[
             Path | None,
@@ -59,7 +66,7 @@ def make_open(open_window: OpenWindow) -> Callable[..., None]:
         """Open the window and watch one bone warp into the other, live ("open" may be left out)."""
         del version  # told before anything else
         session, model, source, destination = _sort_files(files or [])
-        if demo and (files or source_landmarks or destination_landmarks):
+        if demo and (files or source_landmarks or destination_landmarks or passengers):
             raise typer.BadParameter("--demo opens the sample bones: give no files with it.")
         raise typer.Exit(
             open_window(
@@ -69,6 +76,7 @@ def make_open(open_window: OpenWindow) -> Callable[..., None]:
                 destination=destination,
                 source_landmarks=source_landmarks,
                 destination_landmarks=destination_landmarks,
+                passengers=passengers,
                 demo=demo,
                 screenshot=screenshot,
             )

@@ -37,6 +37,7 @@ from pinwarp.io.samples import sample_session
 from pinwarp.io.session_file import read_session
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
+from pinwarp.session.importing.landmarks import Pairing
 from pinwarp.session.keeping.recovery import OtherWindow
 from pinwarp.session.mesh_units import scale_side, size_ratio, unit_factor
 from pinwarp.session.session import Session
@@ -55,12 +56,13 @@ class Opening:
     source_landmarks: Path | None = None
     destination_landmarks: Path | None = None
     model: Path | None = None
+    passengers: Path | None = None
 
     @property
     def paths(self) -> list[Path]:
         """All of them."""
         files = (self.session, self.source, self.destination, self.model)
-        landmarks = (self.source_landmarks, self.destination_landmarks)
+        landmarks = (self.source_landmarks, self.destination_landmarks, self.passengers)
         return [path for path in (*files, *landmarks) if path is not None]
 
 
@@ -210,18 +212,18 @@ class Documents(Capability):
             self._open_model(opening.model)
         if opening.session is not None:
             self.open_session(opening.session)
-            return
         imports = [
-            (Side.SOURCE, opening.source_landmarks),
-            (Side.DESTINATION, opening.destination_landmarks),
+            (Side.SOURCE, opening.source_landmarks, None),
+            (Side.DESTINATION, opening.destination_landmarks, None),
+            (Side.SOURCE, opening.passengers, Pairing.AS_PASSENGERS),
         ]
         for side, path in ((Side.SOURCE, opening.source), (Side.DESTINATION, opening.destination)):
             if path is not None:
                 self.open_mesh(side, path)
         # Behind the meshes in the same queue, so that everything appears in this order.
-        for side, path in imports:
+        for side, path, pairing in imports:
             if path is not None:
-                self._imports.bring_in(path, side, asking=False)
+                self._imports.bring_in(path, side, asking=False, pairing=pairing)
 
     def open_files(self, side: Side, paths: Sequence[Path]) -> None:
         """Open files dropped onto a viewport: a session, meshes or landmarks of that side.

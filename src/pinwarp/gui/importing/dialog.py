@@ -299,6 +299,10 @@ def _pairing_words(session: Session, arriving: Arriving, pairing: Pairing) -> st
             )
         case Pairing.BY_ORDER:
             return "By &order: only for one side at a time"
+        case Pairing.AS_PASSENGERS if side is Side.SOURCE:
+            return "As &passengers: the warp carries them, they are not paired"
+        case Pairing.AS_PASSENGERS:
+            return "As &passengers: only on the source"
     return "As ne&w landmarks, whatever their names"
 
 

@@ -80,7 +80,14 @@ class LandmarkImports(Capability):
         if path is not None:
             self.bring_in(path, side)
 
-    def bring_in(self, path: Path, side: Side | None, *, asking: bool = True) -> None:
+    def bring_in(
+        self,
+        path: Path,
+        side: Side | None,
+        *,
+        asking: bool = True,
+        pairing: Pairing | None = None,
+    ) -> None:
         """Import landmarks for one side, or pairs where the file holds pairs.
 
         Parameters
@@ -89,6 +96,8 @@ class LandmarkImports(Capability):
             The file, and the side it belongs to.
         asking
             Whether to ask before, where there is something to ask; else it is told after.
+        pairing
+            How its landmarks find those of the session, where that is known.
         """
 
         def arrived(reading: LandmarkReading) -> None:
@@ -99,7 +108,8 @@ class LandmarkImports(Capability):
                     "destination landmarks.",
                 )
                 return
-            self._compare(Arriving(path, reading, None if reading.is_pairs else side), asking)
+            own_side = None if reading.is_pairs and pairing is None else side
+            self._compare(Arriving(path, reading, own_side, pairing=pairing), asking)
 
         self._read(path, side, arrived)
 
@@ -149,7 +159,8 @@ class LandmarkImports(Capability):
             return
         session = self._editor.committed
         plain = is_plain(session, arriving)
-        choice: ImportChoice | None = ImportChoice(default_pairing(session, arriving))
+        pairing = arriving.pairing or default_pairing(session, arriving)
+        choice: ImportChoice | None = ImportChoice(pairing)
         if asking and not plain:
             choice = self._tasks.dialogs.ask_import(session, arriving)
         if choice is None:

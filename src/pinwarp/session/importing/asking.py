@@ -11,6 +11,7 @@ from pinwarp.session.importing.landmarks import (
     arrivals,
     awaiting,
     default_pairing,
+    is_paired,
 )
 from pinwarp.session.session import Session
 
@@ -54,7 +55,8 @@ def is_plain(session: Session, arriving: Arriving) -> bool:
     """Whether an import leaves nothing to ask and nothing to tell before it is done.
 
     That is a whole file without remarks, whose positions lie as well on the mesh as any, and
-    whose landmarks all match ones that wait for a position, or are all new where none waits.
+    whose landmarks all match ones that wait for a position, or are all new where there is nothing
+    yet that they could have been meant for.
     """
     reading = arriving.reading
     # What becomes of curves is worth a look.
@@ -70,5 +72,7 @@ def is_plain(session: Session, arriving: Arriving) -> bool:
     if look_alikes(x.name for x in (*session.landmarks, *reading.landmarks)):
         return False
     if fates == {Fate.NEW}:
-        return arriving.side is None or not awaiting(session, arriving.side)
+        # Where all is paired they would be halves that wait for ever.
+        is_free = arriving.side is None or not awaiting(session, arriving.side)
+        return is_free and (arriving.side is None or not is_paired(session))
     return Fate.NEW not in fates

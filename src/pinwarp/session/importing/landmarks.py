@@ -24,6 +24,7 @@ class Pairing(StrEnum):
     BY_NAME = "by name"
     BY_ORDER = "by order"
     AS_NEW = "as new"
+    AS_PASSENGERS = "as passengers"
 
 
 class Fate(StrEnum):
@@ -82,6 +83,8 @@ class Arriving:
         and others only where they lie much better on the mesh.
     is_chosen
         Whether somebody said which of several specimens it is.
+    pairing
+        How its landmarks find those of the session, where somebody said so.
     """
 
     path: Path
@@ -89,6 +92,7 @@ class Arriving:
     side: Side | None
     fits: Mapping[Side, tuple[Fit, ...]] = field(default_factory=dict)
     is_chosen: bool = False
+    pairing: Pairing | None = None
 
     @property
     def must_choose(self) -> bool:
@@ -151,7 +155,8 @@ def default_pairing(session: Session, arriving: Arriving) -> Pairing:
     """Return how a file most likely means its landmarks.
 
     By name where names match; else by order, where as many landmarks wait for a position, or
-    where the names are mere numbers that the file may not even have had.
+    where the names are mere numbers that the file may not even have had. As passengers where they
+    come for the source of a session that is paired and knows none of them.
 
     Examples
     --------
@@ -162,6 +167,8 @@ def default_pairing(session: Session, arriving: Arriving) -> Pairing:
     """
     names = [landmark.name for landmark in arriving.landmarks]
     waiting = () if arriving.side is None else awaiting(session, arriving.side)
+    if _are_stations(session, arriving):
+        return Pairing.AS_PASSENGERS
     if not waiting or not names or set(names) & set(waiting):
         return Pairing.BY_NAME
     are_numbers = all(is_automatic(name) for name in names)
@@ -170,8 +177,33 @@ def default_pairing(session: Session, arriving: Arriving) -> Pairing:
     return Pairing.BY_NAME
 
 
+def is_paired(session: Session) -> bool:
+    """Whether a session has pairs, and nothing that waits to become one.
+
+    Examples
+    --------
+    >>> head = Landmark("head", (1, 2, 3), (4, 5, 6))
+    >>> is_paired(Session(landmarks=(head,))), is_paired(Session())
+    (True, False)
+    """
+    marks = [landmark for landmark in session.landmarks if landmark.role is Role.PAIR]
+    return bool(marks) and all(landmark.is_complete for landmark in marks)
+
+
+def _are_stations(session: Session, arriving: Arriving) -> bool:
+    """Whether landmarks are likely not to be paired, but carried: muscle attachments, say."""
+    known = {landmark.name for landmark in session.landmarks if landmark.role is Role.PAIR}
+    names = {landmark.name for landmark in arriving.landmarks}
+    return bool(names) and arriving.side is Side.SOURCE and is_paired(session) and not known & names
+
+
 def can_pair(session: Session, arriving: Arriving, pairing: Pairing) -> bool:
-    """Whether a way of pairing is possible: an order needs landmarks that wait for a position."""
+    """Whether a way of pairing is possible.
+
+    An order needs landmarks that wait for a position; passengers are on the source.
+    """
+    if pairing is Pairing.AS_PASSENGERS:
+        return arriving.side is Side.SOURCE and bool(arriving.landmarks)
     if pairing is not Pairing.BY_ORDER:
         return True
     return arriving.side is not None and bool(awaiting(session, arriving.side))
@@ -319,6 +351,8 @@ def _read(arriving: Arriving, choice: ImportChoice) -> tuple[Landmark, ...]:
     landmarks = arriving.landmarks
     for side, fit in choice.fits.items():
         landmarks = fit.applied(landmarks, side)
+    if choice.pairing is Pairing.AS_PASSENGERS:
+        return tuple(replace(landmark, role=Role.PASSENGER) for landmark in landmarks)
     return landmarks
 
 
@@ -328,6 +362,13 @@ def _targets(
     """Return the name in the session of each landmark that arrives."""
     if pairing is Pairing.BY_NAME:
         return list(names)
+    if pairing is Pairing.AS_PASSENGERS:
+        # One that is a passenger already gets its place; a pair stays what it is.
+        pairs = [landmark.name for landmark in session.landmarks if landmark.role is Role.PAIR]
+        clashing = [name for name in names if name in pairs]
+        taken = [*names, *(landmark.name for landmark in session.landmarks)]
+        free = dict(zip(clashing, free_names(clashing, taken), strict=True))
+        return [free.get(name, name) for name in names]
     waiting = () if side is None or pairing is Pairing.AS_NEW else awaiting(session, side)
     taken = [landmark.name for landmark in session.landmarks]
     targets = list(waiting[: len(names)])
@@ -335,7 +376,8 @@ def _targets(
 
 
 def _newcomer(landmark: Landmark, target: str, alike: str | None) -> tuple[Fate, str]:
-    words = "new" if target == landmark.name else f"new, called {target}"
+    what = "a new passenger" if landmark.role is Role.PASSENGER else "new"
+    words = what if target == landmark.name else f"{what}, called {target}"
     if landmark.source is None and landmark.destination is None:
         words += ", to be placed"
     if alike is not None:
