@@ -5,12 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.distance import cdist
-from tests.core.femur import femur_landmarks
+from tests.core.femur import femur_landmarks, femur_meshes
 from tests.core.mistaken import made_up
+from tests.core.pelvis import pelvis_landmarks, pelvis_meshes
 from tests.core.strategies import landmark_pairs
 
 from pinwarp.core.errors import LandmarkError, PenaltyError
-from pinwarp.core.prediction import inverse_warp, prediction_of
+from pinwarp.core.prediction import inverse_warp, prediction_of, prior_prediction
 from pinwarp.core.spline import PenaltyConvention, factorise, identity, solve
 
 
@@ -228,3 +229,28 @@ def test_a_real_femur_has_as_many_places_within_two_deviations_but_heavier_tails
     rng = np.random.default_rng(0)
     cases = ((source, destination, rng.permutation(20)[:14]) for _ in range(200))
     assert covered(cases) == pytest.approx([0.38, 0.75, 0.88], abs=0.03)
+
+
+@pytest.mark.parametrize("count", [3, 4])
+@pytest.mark.parametrize("bone", ["femur", "pelvis"])
+def test_the_size_of_a_real_bone_tells_what_three_or_four_pairs_do_not(shared_data, bone, count):
+    """Neither too sure nor so unsure that it says nothing."""
+    if bone == "femur":
+        _, source, destination = femur_landmarks(shared_data)
+        mesh = femur_meshes(shared_data)[0]
+    else:
+        mesh, target = pelvis_meshes(shared_data)
+        rows = pelvis_landmarks(mesh, 24)
+        source, destination = mesh.vertices[rows], target.vertices[rows]
+    size, rng = extent(mesh.vertices), np.random.default_rng(0)
+    ratios = []
+    for _ in range(100):
+        rows = rng.choice(len(source), count, replace=False)
+        rest = np.setdiff1d(np.arange(len(source)), rows)
+        factor = factorise(source[rows])
+        missed = solve(factor, destination[rows]).evaluate(source[rest]) - destination[rest]
+        prior = prior_prediction(factor, destination[rows], size)
+        ratios.append(np.linalg.norm(missed, axis=1) / prior.standard_deviation(source[rest]))
+    ratios = np.concatenate(ratios)
+    assert 0.7 < np.mean(ratios < 2) < 0.999
+    assert 0.5 < np.sqrt(np.mean(ratios**2) / 3) < 1.2

@@ -27,6 +27,9 @@ Matrix = NDArray[np.float64]
 # Distances held at once: they and their products stay in the second-level cache.
 CHUNK = 100_000
 
+# By how much of a bone's size a coordinate strays from what its few pairs tell, over that size.
+PRIOR_SHARE = 0.08
+
 # Places sought by inverse_warp are right to this share of the landmarks' extent.
 CLOSE_ENOUGH = 1e-9
 STEPS = 60
@@ -138,6 +141,53 @@ def prediction_of(
     diagonal = (modes * modes) @ certainty
     judged = diagonal > np.finfo(np.float64).eps * float(diagonal.max())
     sigma = np.sqrt(np.mean(pulls[judged] ** 2 / diagonal[judged, None]))
+    return _prepared(factor, float(sigma), certainty, float(noise[0]), penalty)
+
+
+@quiet
+def prior_prediction(factor: SourceFactor, destination: ArrayLike, size: float) -> Prediction:
+    """Prepare the standard deviation that bones of this size are known for, in place of the pairs'.
+
+    For pairs that leave nothing to estimate it from: up to four, or more without a direction in
+    which they could bend. A coordinate is taken to stray by :data:`PRIOR_SHARE` of the bone's size
+    between two places that far apart, by the square root of that at shorter distances; the affine
+    part, which so few pairs determine badly, adds what it leaves open.
+
+    Parameters
+    ----------
+    factor
+        The source landmarks, one at least.
+    destination
+        (n, 3) destination landmarks; they tell how lengths grow.
+    size
+        The extent of the source bone, a length in its unit.
+
+    Returns
+    -------
+    Prediction
+        In destination mesh units, at penalty 0: such a warp has nothing that a penalty bends.
+
+    Examples
+    --------
+    >>> from pinwarp.core.factor import factorise
+    >>> corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    >>> prior = prior_prediction(factorise(corners), 2 * corners, size=1.5)
+    >>> near, far = prior.standard_deviation([[0.4, 0.4, 0], [0, 0, 1]])
+    >>> bool(0 < near < far < 1)
+    True
+    """
+    displaced = np.asarray(destination, dtype=np.float64) - np.mean(destination, axis=0)
+    spread = float(np.sqrt(np.mean(np.sum(displaced**2, axis=1))))
+    # The variance between two places d apart is 2 sigma^2 d / scale.
+    sigma = PRIOR_SHARE * (spread / factor.scale) * np.sqrt(size * factor.scale / 2)
+    return _prepared(factor, float(sigma), np.zeros(factor.modes[0].shape), 0.0, 0.0)
+
+
+def _prepared(
+    factor: SourceFactor, sigma: float, certainty: Matrix, noise: float, penalty: float
+) -> Prediction:
+    """Prepare all that does not depend on the place."""
+    modes = factor.modes_at_landmarks
     columns = factor.rank + 1
     affine = factor.rotate_back(np.eye(len(factor.source), columns))
     _, vectors = factor.modes
@@ -145,10 +195,10 @@ def prediction_of(
     share = factor.scale / (factor.stiffest_mode + penalty)
     weight = share * np.sqrt(certainty)
     return Prediction(
-        _sigma=float(sigma),
+        _sigma=sigma,
         _factor=factor,
         _columns=np.hstack([affine, modes * weight]),
-        _corner=share * factor.corner + noise[0] * np.eye(columns),
+        _corner=share * factor.corner + noise * np.eye(columns),
         _coupling=(factor.coupling @ vectors) * weight,
         _share=share,
     )

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pinwarp.core.errors import RangeError
+from pinwarp.core.factor import SourceFactor
 from pinwarp.core.landmarks import Landmark, Position, Side, as_position
-from pinwarp.core.prediction import inverse_warp, prediction_of
-from pinwarp.core.spline import PenaltyConvention
+from pinwarp.core.prediction import inverse_warp, prediction_of, prior_prediction
+from pinwarp.core.spline import PenaltyConvention, Spline
 from pinwarp.session.warp.result import WarpResult
 
 # With fewer pairs a prediction says more about the pairs than about the bone.
@@ -29,8 +31,8 @@ class Ghost:
     position
         Where it is expected, in that side's mesh unit.
     deviation
-        The prediction's standard deviation there, in destination mesh units; None where there
-        are too few pairs to tell, and with semilandmarks.
+        The prediction's standard deviation there, in destination mesh units, told by the bone's
+        size where there are too few pairs; None with semilandmarks.
     """
 
     name: str
@@ -75,12 +77,25 @@ def _predicted(landmark: Landmark | None, side: Side, result: WarpResult) -> Gho
         if not converged[0]:
             return None
         expected = source
-    deviation = None
+    deviation = _deviation(result, factor, spline, source)
+    return Ghost(landmark.name, side, as_position(expected[0]), deviation)
+
+
+def _deviation(
+    result: WarpResult, factor: SourceFactor, spline: Spline, source: NDArray[np.float64]
+) -> float | None:
+    """Return how far the warp may be off at a place of the source, None where nobody can tell."""
     # Not while the eigenvalues are put off: they would hold the hand up. Semilandmarks bring the
     # expected place nearer than the pairs alone could tell.
-    foretold = result.semilandmarks is None and factor.has_modes
-    if foretold and spline.convention is PenaltyConvention.REGULARISING:
-        prediction = prediction_of(factor, np.array(result.inputs.destination), spline.penalty)
-        if prediction is not None:
-            deviation = float(prediction.standard_deviation(source)[0])
-    return Ghost(landmark.name, side, as_position(expected[0]), deviation)
+    if result.semilandmarks is not None or not factor.has_modes:
+        return None
+    destination = np.array(result.inputs.destination)
+    if not factor.usable_modes.any():
+        mesh = result.inputs.mesh
+        known = factor.source if mesh is None else mesh.vertices
+        size = float(np.linalg.norm(np.ptp(known, axis=0)))
+        return float(prior_prediction(factor, destination, size).standard_deviation(source)[0])
+    if spline.convention is not PenaltyConvention.REGULARISING:
+        return None
+    prediction = prediction_of(factor, destination, spline.penalty)
+    return None if prediction is None else float(prediction.standard_deviation(source)[0])
