@@ -12,6 +12,14 @@ from pinwarp.session import edits
 from pinwarp.session.warp.ghost import Ghost
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
+# What an entry of the sheet of shortcuts may begin with: "Source Landmarks" says not what is done.
+VERBS = {
+    *("Accept", "Add", "Begin", "Choose", "Close", "Compare", "Copy", "Cut", "Delete", "Disable"),
+    *("Draw", "Export", "Filter", "Fit", "Focus", "Import", "Load", "Lock", "Look", "Make", "Move"),
+    *("Nudge", "Open", "Orbit", "Paste", "Place", "Play", "Put", "Quit", "Redo", "Refine"),
+    *("Rename", "Return", "Save", "Select", "Shape", "Show", "Slide", "Snap", "Suggest", "Switch"),
+    *("Take", "Turn", "Undo", "Write"),
+}
 SHIFT, CTRL = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.ControlModifier
 
 
@@ -318,6 +326,9 @@ def test_the_sheet_of_shortcuts_lists_every_key_and_closes_with_any(user):
     for action in user.window.actions_by_key.values():
         keys = ", ".join(key.toString() for key in action.shortcuts())
         assert not keys or keys in listed, action.text()
+    verbs = {words.split()[0] for _, lines in sheet.lines() for _, words in lines}
+    assert {verb.capitalize().rstrip(",") for verb in verbs} <= VERBS
+    assert ("Ctrl+Shift+1", "Import Source Landmarks") in dict(sheet.lines())["File"]
     before = user.session
     user.press(Qt.Key.Key_Delete, widget=sheet)
     assert not sheet.isVisible()

@@ -12,6 +12,8 @@ from pinwarp.gui.style.icons import icon as icon_named
 
 # The property of any QAction that says where it stands.
 PLACES = "places"
+# The property that says what it does, for the sheet of shortcuts.
+DEED = "deed"
 
 
 class Action(QAction):
@@ -36,6 +38,9 @@ class Action(QAction):
         Of the project's own.
     tip
         What it does, in more words than its text.
+    deed
+        What it does, from a verb on, where its text has none: a menu's title or a tick says it
+        there, the sheet of shortcuts has neither.
     button
         What it is called on a button.
     possible
@@ -55,6 +60,7 @@ class Action(QAction):
         keys: str = "",
         icon: str = "",
         tip: str = "",
+        deed: str = "",
         button: str = "",
         possible: Callable[[], object] | None = None,
         checked: Callable[[], object] | None = None,
@@ -63,6 +69,7 @@ class Action(QAction):
         super().__init__(text, parent)
         self.setObjectName(key)
         self.setProperty(PLACES, at)
+        self.setProperty(DEED, deed)
         self.setShortcuts([QKeySequence(one) for one in keys.split()])
         self._tip = tip
         self.reword(text)

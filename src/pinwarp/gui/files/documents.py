@@ -144,6 +144,7 @@ class Documents(Capability):
                 self.close_session,
                 at="File.20",
                 keys="Ctrl+N",
+                deed="Begin New Session",
                 tip="Begin with nothing, in this window",
             ),
             placed(self.recent_menu.menuAction(), "File.22"),

@@ -104,6 +104,7 @@ class FindingsPresenter(Capability):
             self.next,
             at="Place.14",
             keys="Shift+N",
+            deed="Select Next Pair to Check",
             tip="The next one listed below the table",
             possible=lambda: self._found,
         )

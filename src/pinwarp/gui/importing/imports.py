@@ -54,6 +54,7 @@ class LandmarkImports(Capability):
                 lambda: self.ask(Side.SOURCE),
                 at="import.11",
                 keys="Ctrl+Shift+1",
+                deed="Import Source Landmarks",
                 tip="Import source landmarks from a file",
             ),
             Action(
@@ -62,6 +63,7 @@ class LandmarkImports(Capability):
                 lambda: self.ask(Side.DESTINATION),
                 at="import.12",
                 keys="Ctrl+Shift+2",
+                deed="Import Destination Landmarks",
                 tip="Import destination landmarks from a file",
             ),
             Action(

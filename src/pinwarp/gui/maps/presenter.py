@@ -130,6 +130,7 @@ class MapPresenter(Capability):
             self._next_map,
             at="maps.31",
             keys="M",
+            deed="Show Next Map",
             tip="Colour the warped source by something else",
         )
         self.actions = (

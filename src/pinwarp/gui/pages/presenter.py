@@ -47,6 +47,7 @@ class UserGuide(Capability):
                 partial(self.read, ""),
                 at="Help.11",
                 keys="F1",
+                deed="Open User Guide",
                 tip="How everything is done, page by page, with a search",
             ),
             *(

@@ -79,6 +79,7 @@ class Guidance(Capability):
                 checked=lambda: editor.view.guided is not None,
                 at="Place.22 tools.32",
                 keys="G",
+                deed="Switch Guide On or Off",
                 icon="guide",
                 tip="Ask for one landmark after the other",
             ),

@@ -164,6 +164,7 @@ class TablePresenter(Capability):
                 self.edit_note,
                 at="Edit.33 row.13",
                 keys="Shift+F2",
+                deed="Write Note",
                 tip="Write something down about a landmark",
                 possible=self._is_selected,
             ),
@@ -194,6 +195,7 @@ class TablePresenter(Capability):
                 self.next_incomplete,
                 at="Place.13",
                 keys="N",
+                deed="Select Next Incomplete Landmark",
             ),
             Action(
                 "show_coordinates",

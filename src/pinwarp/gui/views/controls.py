@@ -91,6 +91,7 @@ class ViewControls(Capability):
             self._next_link,
             at="cameras.21 tools.42",
             keys="K",
+            deed="Choose Next Camera Link",
             icon=LINK_ACTIONS[editor.view.link],
         )
         self.actions = (
@@ -130,6 +131,7 @@ class ViewControls(Capability):
                 self.look_as_at_first,
                 at="View.23",
                 keys="Shift+Home",
+                deed="Return to Standard View",
                 tip="Look at both bones as when they were opened",
             ),
             Action(
@@ -147,6 +149,7 @@ class ViewControls(Capability):
                     partial(self.look_from, view),
                     at=f"sides.{place}",
                     keys=str(number),
+                    deed=f"Look From {text.replace('&', '').removesuffix(' View')}",
                     tip="The side that is shown first" if view is StandardView.FRONT else "",
                 )
                 for number, (view, (text, place)) in enumerate(_SIDES.items(), 1)

@@ -59,6 +59,7 @@ class Looks(Capability):
                 checked=lambda: editor.view.arrows,
                 at="View.12",
                 keys="A",
+                deed="Show Residual Arrows",
                 tip="From warped landmarks to destinations",
             ),
             Action(
@@ -68,6 +69,7 @@ class Looks(Capability):
                 checked=lambda: editor.view.section is not None,
                 at="View.31 tools.45",
                 keys="X",
+                deed="Cut Both Bones Open",
                 icon="section",
                 tip="Cut both bones open",
             ),
@@ -80,6 +82,7 @@ class Looks(Capability):
                 checked=lambda: editor.view.wireframe,
                 at="View.32",
                 keys="Shift+W",
+                deed="Draw Bones as Wireframe",
                 tip="Draw edges only",
             ),
             Action(
@@ -88,6 +91,7 @@ class Looks(Capability):
                 lambda: self._resize_markers(1),
                 at="View.41",
                 keys="]",
+                deed="Draw Larger Landmarks",
                 possible=lambda: editor.view.marker_radius < MARKER_RADII[1],
             ),
             Action(
@@ -96,6 +100,7 @@ class Looks(Capability):
                 lambda: self._resize_markers(-1),
                 at="View.42",
                 keys="[",
+                deed="Draw Smaller Landmarks",
                 possible=lambda: editor.view.marker_radius > MARKER_RADII[0],
             ),
         )

@@ -81,7 +81,9 @@ class GridPresenter(Capability):
         self._worker = LatestWins(_warped)
         self._worker.computed.connect(self._on_warped)
         self._worker.failed.connect(self._on_failure)
-        self.following = Action("grid_next", "N&ext Grid", self._next, at="grid.31", keys="D")
+        self.following = Action(
+            "grid_next", "N&ext Grid", self._next, at="grid.31", keys="D", deed="Show Next Grid"
+        )
         self.actions = (*one_of(map(self._action_of, GridKind), parent), self.following)
         editor.session_changed.connect(self._on_change)
         editor.view_changed.connect(self._on_change)

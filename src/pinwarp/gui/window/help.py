@@ -50,6 +50,7 @@ class Help(Capability):
                 show_shortcuts,
                 at="Help.12",
                 keys="?",
+                deed="Show Shortcuts",
                 tip="All keys and mouse gestures",
             ),
             Action(

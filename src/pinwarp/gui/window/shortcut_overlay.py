@@ -8,6 +8,8 @@ from qtpy.QtCore import QEvent, QObject, QPointF, QRectF, Qt
 from qtpy.QtGui import QAction, QColor, QFont, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen
 from qtpy.QtWidgets import QWidget
 
+from pinwarp.gui.capability.action import DEED
+
 Lines = list[tuple[str, str]]
 
 _MOUSE: Lines = [
@@ -132,10 +134,10 @@ class ShortcutOverlay(QWidget):
 
 
 def _entry(action: QAction) -> tuple[str, str]:
-    """Return the keys of an action and its words; a key that is held stands behind a tab."""
+    """Return the keys of an action and what it does; a key that is held stands behind a tab."""
     words, _, held = action.text().replace("&", "").partition("\t")
     keys = [key.toString() for key in action.shortcuts()] + [held] * bool(held)
-    return ", ".join(keys), words.rstrip("…")
+    return ", ".join(keys), action.property(DEED) or words.rstrip("…")
 
 
 def _in_columns(heights: Sequence[float], count: int) -> list[list[int]]:
