@@ -29,7 +29,8 @@ from pinwarp.gui.files.lost_work_dialog import (
 from pinwarp.io.meshes import read_mesh
 from pinwarp.io.samples import assets_folder
 from pinwarp.io.session_file import MeshReference, SessionRecord
-from pinwarp.io.work_file import UnsavedWork
+from pinwarp.io.work_file import UnsavedWork, read_work
+from pinwarp.session import edits
 from pinwarp.session.keeping import journal
 from pinwarp.session.keeping.journal import WORK
 from pinwarp.session.keeping.recovery import LostWork
@@ -97,6 +98,45 @@ def test_after_a_crash_the_unsaved_work_is_restored_as_unsaved(user, crashed, sa
         again.press(Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
         assert again.dialogs.overwrite_questions == []
         assert len(sample_copy.read_text().splitlines()) == len(before.splitlines()) + 1
+
+
+def test_the_guide_asks_on_where_it_was_and_stays_away_where_it_was_ended(
+    user, sample_copy, state_folder, tmp_path
+):
+    user.window.parts.documents.open_session(sample_copy)
+    user.settle()
+    click_a_new_landmark(user)
+    user.click(SOURCE, user.free_place(DESTINATION))
+
+    def wait_until_guide_is_kept(name):
+        def is_kept():
+            return any(read_work(file).guided == name for file in work_files(state_folder))
+
+        user.qtbot.waitUntil(is_kept, timeout=10_000)
+
+    user.press(Qt.Key.Key_G)
+    bar = user.window.parts.guidance.bar
+    QTest.mouseClick(bar.skip, Qt.MouseButton.LeftButton)
+    assert user.editor.view.guided == "landmark_1"
+    wait_until_guide_is_kept("landmark_1")
+    with next_start(user, killed(state_folder, tmp_path), LostAnswer.RESTORE) as again:
+        assert again.editor.view.guided == "landmark_1"
+        assert again.window.parts.guidance.bar.isVisible()
+    # Ended, then restored in a window that asks for landmarks of its own.
+    QTest.mouseClick(bar.end, Qt.MouseButton.LeftButton)
+    wait_until_guide_is_kept(None)
+    folder = killed(state_folder, tmp_path / "ended")
+    with next_start(user, folder, LostAnswer.LATER) as again:
+        again.open_sample()
+        session = edits.remove_side(again.session, "fovea_capitis", DESTINATION)
+        again.editor.commit(session, "Remove one")
+        again.press(Qt.Key.Key_G)
+        assert again.editor.view.guided == "fovea_capitis"
+        again.dialogs.lost = [LostAnswer.RESTORE]
+        again.trigger("restore")
+        assert len(again.session.landmarks) == len(user.session.landmarks)
+        assert again.editor.view.guided is None
+        assert not again.window.parts.guidance.bar.isVisible()
 
 
 def test_restored_work_survives_a_second_crash(user, crashed, tmp_path):

@@ -29,6 +29,8 @@ class UnsavedWork:
         What was done last, in the words of the Edit menu.
     edited
         When, with its time zone.
+    guided
+        The landmark that the guide asked for; None without a guide.
     """
 
     record: SessionRecord
@@ -36,6 +38,7 @@ class UnsavedWork:
     sha256: str | None
     label: str | None
     edited: datetime
+    guided: str | None = None
 
 
 def write_work(path: Path, work: UnsavedWork) -> None:
@@ -54,6 +57,7 @@ def write_work(path: Path, work: UnsavedWork) -> None:
         "sha256": work.sha256,
         "label": work.label,
         "edited": work.edited.isoformat(),
+        "guided": work.guided,
     }
     others = tuple(entry for entry in work.record.unknown if entry[0] != _KEY)
     record = replace(work.record, unknown=(*others, (_KEY, json.dumps(about))))
@@ -89,6 +93,8 @@ def read_work(path: Path) -> UnsavedWork:
             sha256=about["sha256"],
             label=about["label"],
             edited=datetime.fromisoformat(about["edited"]),
+            # Versions before did not keep it.
+            guided=about.get("guided"),
         )
     except (KeyError, TypeError, ValueError) as error:
         raise FileFormatError(path, "This session says nothing of unsaved work.") from error

@@ -153,6 +153,9 @@ class Recovery(QObject, Capability):
                 )
                 return False
             self._editor.replace_all(session, work.path, sha256=work.sha256, saved=False)
+            # Whatever this window was asking for before: the guide goes on where it was, or is off.
+            is_there = work.guided is not None and session.index_of(work.guided) is not None
+            self._editor.look(guided=work.guided if is_there else None)
             if self._journal is not None:
                 self._journal.inherit(lost.folder, lock)
             else:

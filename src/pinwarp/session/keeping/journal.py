@@ -49,6 +49,7 @@ class _State:
     label: str | None
     edited: datetime
     opened: datetime
+    guided: str | None
 
 
 @dataclass(frozen=True)
@@ -96,6 +97,7 @@ class Journal:
         # Before anything is drawn: whatever happens then, the work is kept.
         editor.session_changed.connect(self._note, priority=1)
         editor.saved.connect(self._note, priority=1)
+        editor.view_changed.connect(self._note_guide)
         self._note()
         self._thread = threading.Thread(target=self._keep_writing, name="journal", daemon=True)
         self._thread.start()
@@ -151,6 +153,7 @@ class Journal:
         """Forget the work: it was saved, or discarded on purpose."""
         self._editor.session_changed.disconnect(self._note)
         self._editor.saved.disconnect(self._note)
+        self._editor.view_changed.disconnect(self._note_guide)
         with self._changed:
             self._closing.set()
             self._changed.notify()
@@ -165,18 +168,26 @@ class Journal:
             return
         state, noted = self._state(), self._noted
         if noted is not None and noted.path == state.path:
-            if noted.session is state.session:
-                return
             state = replace(state, opened=noted.opened)
+            if noted.session is state.session:
+                state = replace(state, edited=noted.edited)
+                if state == noted:
+                    return
         with self._changed:
             self._noted = self._waiting = state
             self._changed.notify()
+
+    def _note_guide(self, _changed: object = None) -> None:
+        """Keep what the guide asks for, which may change without the session."""
+        if self._noted is None or self._noted.guided != self._editor.view.guided:
+            self._note()
 
     def _state(self) -> _State:
         editor, now = self._editor, datetime.now().astimezone()
         session = editor.committed if editor.is_dirty else None
         path = editor.path.absolute() if editor.path is not None else None
-        return _State(session, path, editor.file_sha256, editor.undo_label, now, now)
+        guided = editor.view.guided
+        return _State(session, path, editor.file_sha256, editor.undo_label, now, now, guided)
 
     def _keep_writing(self) -> None:
         while (task := self._next()) is not None:
@@ -228,7 +239,9 @@ def _write_into(
         work.unlink(missing_ok=True)
     else:
         record = to_record(state.session)
-        unsaved = UnsavedWork(record, state.path, state.sha256, state.label, state.edited)
+        unsaved = UnsavedWork(
+            record, state.path, state.sha256, state.label, state.edited, state.guided
+        )
         write_work(work, unsaved)
     return about
 
