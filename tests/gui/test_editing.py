@@ -198,20 +198,44 @@ def test_below_three_pairs_there_is_no_ghost(user):
     assert "nothing to accept" in user.window.statusBar().currentMessage()
 
 
-def test_with_three_or_four_pairs_the_ghost_has_no_disc(user):
+def test_with_three_or_four_pairs_the_disc_comes_of_the_bones_size(user):
+    """Where the bone hides the ghost it says so, and Space shows the place before it accepts."""
     user.open_sample()
     names = [x.name for x in user.session.landmarks]
     keep = [
         "fovea_capitis",
         "greater_trochanter_lateral",
         "lateral_epicondyle",
+        "midshaft_anterior",
         "medial_epicondyle",
     ]
+    truth = np.array(user.session.landmark("medial_epicondyle").destination)
     session = edits.remove(user.session, [n for n in names if n not in keep])
     session = edits.remove_side(session, "medial_epicondyle", DESTINATION)
     user.editor.commit(session, "Keep four")
     user.settle()
-    assert user.window.parts.ghosts.at(DESTINATION).deviation is None
+    viewport = user.window.viewports[DESTINATION]
+    for pairs in (4, 3):
+        assert len(user.session.pairs) == pairs
+        ghost = viewport.drawn(Ghost)
+        missed = np.linalg.norm(np.array(ghost.position) - truth)
+        assert max(missed / 3, 2) < ghost.deviation < 60
+        user.editor.select("midshaft_anterior")
+        user.press(Qt.Key.Key_Delete, CTRL)
+    user.press(Qt.Key.Key_Z, CTRL)
+    ghost = viewport.drawn(Ghost)
+    at = viewport.rect().center()
+    for _ in range(8):
+        if not viewport.sees(ghost.position):
+            break
+        user.drag(viewport, at, at + QPoint(60, 0))
+    assert not viewport.sees(ghost.position)
+    viewport.setFocus()
+    user.press(Qt.Key.Key_Space)
+    assert not user.session.landmark(ghost.name).is_complete
+    assert viewport.sees(ghost.position)
+    user.press(Qt.Key.Key_Space)
+    assert user.session.landmark(ghost.name).destination == ghost.position
 
 
 # The guide

@@ -296,7 +296,9 @@ class MarkerLayer(QWidget):
         self._paint_doubt(painter, ghost, at, 0.22)
         draw_ghost(painter, at, GHOST_RADIUS)
         painter.setOpacity(1.0)
-        draw_label(painter, f"{ghost.name}?", at, self.room_at(at))
+        # Said, too: a ring may look faint for other reasons.
+        words = f"{ghost.name}? (behind)" if hidden else f"{ghost.name}?"
+        draw_label(painter, words, at, self.room_at(at))
 
     def _paint_other_ghosts(self, painter: QPainter, others: OtherGhosts) -> None:
         """Paint smaller rings without names, in discs that leave the bone to be seen."""
