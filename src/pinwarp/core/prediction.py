@@ -176,8 +176,8 @@ def prior_prediction(factor: SourceFactor, destination: ArrayLike, size: float) 
     >>> bool(0 < near < far < 1)
     True
     """
-    displaced = np.asarray(destination, dtype=np.float64) - np.mean(destination, axis=0)
-    spread = float(np.sqrt(np.mean(np.sum(displaced**2, axis=1))))
+    places = kernel.as_points(destination)
+    spread = float(np.sqrt(np.mean(np.sum((places - places.mean(axis=0)) ** 2, axis=1))))
     # The variance between two places d apart is 2 sigma^2 d / scale.
     sigma = PRIOR_SHARE * (spread / factor.scale) * np.sqrt(size * factor.scale / 2)
     return _prepared(factor, float(sigma), np.zeros(factor.modes[0].shape), 0.0, 0.0)
