@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import sys
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -16,6 +20,7 @@ from pinwarp.gui.exporting.animation import AnimationOrder, Motion, animation_st
 from pinwarp.gui.exporting.offscreen import Offscreen
 from pinwarp.gui.exporting.picture_dialogs import AnimationDialog, PictureDialog
 from pinwarp.gui.scene.drawables import Arrows, FoldedSurface, GridLines, Overlay
+from pinwarp.io.animation import has_encoder
 from pinwarp.session import edits
 from pinwarp.session.warp.provenance import session_hash
 
@@ -58,6 +63,8 @@ def picture(user, path, width, height, *, view=0, off=(), on=()):
     type_into(dialog.image_width, width)
     type_into(dialog.image_height, height)
     choose(dialog.view, view)
+    if "filled" not in on:
+        off = (*off, "filled")
     for name in (*off, *on):
         box = getattr(dialog, name)
         if box.isChecked() != (name in on):
@@ -325,6 +332,65 @@ def test_a_blend_leaves_out_what_belongs_to_the_whole_warp_and_would_stand_still
     assert view.drawn(Overlay).full.vertices is vertices, "the window's own stays as it is"
 
 
+def test_an_animation_of_a_map_has_its_legend_in_every_frame(sample, tmp_path):
+    view = sample.window.viewports[DESTINATION]
+    bare = animation(sample, tmp_path / "bare.gif", motion=0, size=480, frames=3)
+    sample.trigger("map_distance")
+    ordered = picture(sample, tmp_path / "map.png", 480, 480, view=2, off=("landmarks",))
+    frames = animation(sample, tmp_path / "map.gif", motion=0, size=480, frames=3)
+    scale = 480 / view.height()
+    legend = view.map_legend.geometry()
+    right = 480 - round((view.width() - legend.left()) * scale)
+    part = np.s_[round(legend.top() * scale) + 4 : round(legend.bottom() * scale) - 4, right + 4 :]
+    shown = ordered[part][..., :3].astype(int)
+    for frame, before in zip(frames, bare, strict=True):
+        # A GIF has 256 colours.
+        assert np.abs(frame[part] - shown).mean() < 8
+        assert apart(frame[part], before[part]) > 0.05
+
+
+def test_a_picture_cut_to_the_bones_is_filled_by_them(sample, tmp_path):
+    def filled(pixels):
+        rows, columns = np.nonzero(pixels[..., 3] > 127)
+        height, width = pixels.shape[:2]
+        return np.ptp(rows) / height, np.ptp(columns) / width
+
+    dialog = dialog_of(sample, "export_picture", PictureDialog)
+    assert dialog.filled.isChecked()
+    # Two femora side by side, and one alone: the size follows, until somebody chooses one.
+    both = dialog.image_width.value() / dialog.image_height.value()
+    choose(dialog.view, 1)
+    one = dialog.image_width.value() / dialog.image_height.value()
+    assert max(dialog.image_width.value(), dialog.image_height.value()) == 2400
+    assert one < 0.6 * both
+    for box in (dialog.landmarks, dialog.framed, dialog.transparent):
+        if box.isChecked() != (box is dialog.transparent):
+            QTest.keyClick(box, Qt.Key.Key_Space)
+    sample.dialogs.saves = [tmp_path / "bone.png"]
+    press(sample, dialog)
+    with Image.open(tmp_path / "bone.png") as found:
+        high, wide = filled(np.asarray(found))
+    assert high > 0.9
+    assert wide > 0.7
+    dialog = dialog_of(sample, "export_picture", PictureDialog)
+    type_into(dialog.image_width, 700)
+    choose(dialog.view, 0)
+    assert dialog.image_width.value() == 700
+    QTest.keyClick(dialog, Qt.Key.Key_Escape)
+
+
+def test_the_same_place_is_under_its_landmark_in_a_picture_cut_to_the_bones(sample, tmp_path):
+    """Bones are rendered and landmarks painted in two ways: both know the part that is shown."""
+    shown = {"view": 2, "off": ("framed", "names"), "on": ("filled", "landmarks")}
+    found = picture(sample, tmp_path / "a.png", 500, 900, **shown)
+    green = np.abs(found[..., :3].astype(int) - [0, 0x9E, 0x73]).max(axis=2) < 6
+    bare = {"view": 2, "off": ("framed", "landmarks"), "on": ("filled", "transparent")}
+    bone = picture(sample, tmp_path / "b.png", 500, 900, **bare)[..., 3] > 127
+    # Nearly all of each sign lies on the bone.
+    assert green.sum() > 300
+    assert (green & bone).sum() > 0.6 * green.sum()
+
+
 def test_what_would_not_move_is_refused(sample, tmp_path):
     sample.editor.commit(edits.set_components(sample.session, Components.RIGID), "Apply")
     sample.settle()
@@ -371,3 +437,53 @@ def test_more_than_gif_can_show_is_refused_before_the_work(sample):
     assert "too much for the memory" in dialog.note.text()
     assert not dialog.export.isEnabled()
     QTest.keyClick(dialog, Qt.Key.Key_Escape)
+
+
+@pytest.mark.skipif(not has_encoder(), reason="needs the extra 'video'")
+def test_an_animation_can_be_an_mp4(sample, tmp_path):
+    import imageio_ffmpeg
+
+    dialog = dialog_of(sample, "export_animation", AnimationDialog)
+    choose(dialog.format, 1)
+    type_into(dialog.image_width, 161)
+    type_into(dialog.image_height, 160)
+    type_into(dialog.frames, 8)
+    type_into(dialog.seconds, 1)
+    sample.dialogs.saves = [tmp_path / "turn"]
+    press(sample, dialog)
+    assert sample.dialogs.errors == []
+    assert imageio_ffmpeg.count_frames_and_secs(tmp_path / "turn.mp4")[0] == 8
+    assert "turn.mp4: 8 frames in 1 s" in sample.window.statusBar().currentMessage()
+
+
+def test_where_no_encoder_is_the_choice_says_how_to_get_one(sample, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    dialog = dialog_of(sample, "export_animation", AnimationDialog)
+    assert dialog.export.isEnabled()
+    choose(dialog.format, 1)
+    assert "pip install" in dialog.note.text()
+    assert "pinwarp[video]" in dialog.note.text()
+    assert not dialog.export.isEnabled()
+    choose(dialog.format, 0)
+    assert dialog.export.isEnabled()
+    QTest.keyClick(dialog, Qt.Key.Key_Escape)
+
+
+def test_an_encoder_that_fails_is_told_and_leaves_nothing(sample, tmp_path, monkeypatch):
+    def missing():
+        raise RuntimeError("no ffmpeg exe could be found")
+
+    stand_in = ModuleType("imageio_ffmpeg")
+    stand_in.get_ffmpeg_exe = missing
+    stand_in.__spec__ = ModuleSpec("imageio_ffmpeg", None)
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", stand_in)
+    dialog = dialog_of(sample, "export_animation", AnimationDialog)
+    choose(dialog.format, 1)
+    type_into(dialog.image_width, 64)
+    type_into(dialog.image_height, 64)
+    type_into(dialog.frames, 2)
+    sample.dialogs.saves = [tmp_path / "turn.mp4"]
+    press(sample, dialog)
+    ((_, text),) = sample.dialogs.errors
+    assert "The encoder does not start (no ffmpeg exe could be found)" in text
+    assert list(tmp_path.iterdir()) == []

@@ -8,7 +8,8 @@ from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
-from qtpy.QtGui import QColor
+from qtpy.QtCore import Qt
+from qtpy.QtGui import QColor, QImage
 
 from pinwarp.core.components import Components, as_drawn
 from pinwarp.core.errors import PinwarpError
@@ -16,7 +17,8 @@ from pinwarp.core.landmarks import Side
 from pinwarp.core.live import drawable
 from pinwarp.gui.drawn.surface import shading_normals, triangles
 from pinwarp.gui.exporting.offscreen import Offscreen, Pixels
-from pinwarp.gui.scene.drawables import FoldedSurface, GridLines, Overlay
+from pinwarp.gui.exporting.picture import FORMAT, paint_signs
+from pinwarp.gui.scene.drawables import FoldedSurface, GridLines, Legend, Overlay
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.style import theme
 from pinwarp.gui.tasks.stepped_job import Steps
@@ -28,6 +30,13 @@ Vertices = NDArray[np.float32]
 
 # All frames are held until they are written: 3 bytes a pixel.
 MOST_PIXELS = 120_000_000
+
+
+class Format(StrEnum):
+    """What kind of file an animation becomes, by its suffix."""
+
+    GIF = "gif"
+    MP4 = "mp4"
 
 
 class Motion(StrEnum):
@@ -51,6 +60,8 @@ class AnimationOrder:
         How many pictures.
     seconds
         How long they take, before they repeat.
+    format
+        The kind of file.
     """
 
     motion: Motion = Motion.TURN
@@ -58,6 +69,7 @@ class AnimationOrder:
     height: int = 640
     frames: int = 60
     seconds: float = 4.0
+    format: Format = Format.GIF
 
     @property
     def pixels(self) -> int:
@@ -133,6 +145,7 @@ def animation_steps(order: AnimationOrder, view: Canvas, ends: Ends | None = Non
         When there is too little memory, or no warped source to be blended.
     """
     scene = view.scene
+    legend = _legend(order, view)
     copy = Offscreen(view, scene)
     try:
         moves = _turns(order, copy) if ends is None else _blends(order, copy, scene, ends)
@@ -142,7 +155,7 @@ def animation_steps(order: AnimationOrder, view: Canvas, ends: Ends | None = Non
             for tile in copy.tiles(order.width, order.height):
                 tile.put_into(frame)
                 yield (number + tile.share) / order.frames, f"rendering {number + 1}"
-            frames.append(over_background(frame))
+            frames.append(laid_over(legend, over_background(frame)))
         return frames
     except MemoryError as error:
         raise PinwarpError(
@@ -174,6 +187,31 @@ def _blends(order: AnimationOrder, copy: Offscreen, scene: Scene, ends: Ends) ->
         moved = replace(warp, vertices=vertices, normals=normals)
         copy.show(bare.with_(replace(overlay, full=moved, stand_in=None, visible=True)))
         yield
+
+
+def _legend(order: AnimationOrder, view: Canvas) -> Pixels:
+    """Return what stands still before all frames: a map's legend; colours say little without it.
+
+    Returns
+    -------
+    (height, width, 4) uint8, premultiplied RGBA
+    """
+    image = QImage(order.width, order.height, FORMAT)
+    image.fill(Qt.GlobalColor.transparent)
+    paint_signs(image, view, view.scene.only(Legend), image.rect())
+    return np.frombuffer(image.constBits(), np.uint8).reshape(order.height, order.width, 4).copy()
+
+
+def laid_over(sheet: Pixels, frame: Pixels) -> Pixels:
+    """Lay a premultiplied RGBA sheet over an RGB frame."""
+    covered = np.flatnonzero((sheet[..., 3] > 0).any(axis=1))
+    if not len(covered):
+        return frame
+    rows = slice(covered[0], covered[-1] + 1)
+    over = sheet[rows].astype(np.float32)
+    clear = 1 - over[..., 3:] / 255
+    frame[rows] = (over[..., :3] + clear * frame[rows] + 0.5).clip(0, 255).astype(np.uint8)
+    return frame
 
 
 def over_background(frame: Pixels) -> Pixels:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
+from qtpy.QtCore import QRectF
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 from vtkmodules.vtkRenderingCore import vtkRenderWindow
@@ -55,6 +56,11 @@ class Tile:
         here[:] = self.pixels[: here.shape[0], : here.shape[1]]
 
 
+def whole_of(canvas: Canvas) -> QRectF:
+    """Return all of a canvas as a region of it, in logical pixels."""
+    return QRectF(0, 0, max(1, canvas.width()), max(1, canvas.height()))
+
+
 class Offscreen:
     """Renders scenes as a canvas shows them; to be closed.
 
@@ -66,11 +72,19 @@ class Offscreen:
         What is rendered first.
     tile
         The largest width and height rendered at once, in pixels.
+    region
+        The part of the canvas that is rendered, in its logical pixels; all of it when None.
     """
 
-    def __init__(self, canvas: Canvas, scene: Scene, tile: int = TILE) -> None:
+    def __init__(
+        self, canvas: Canvas, scene: Scene, tile: int = TILE, region: QRectF | None = None
+    ) -> None:
         self._tile = tile
-        self._view = (max(1, canvas.width()), max(1, canvas.height()))
+        whole = whole_of(canvas)
+        region = whole if region is None else region
+        self._region = (region.width(), region.height())
+        self._canvas_height = whole.height()
+        self._beside = region.center() - whole.center()
         self._plotter: pv.Plotter | None = pv.Plotter(off_screen=True, lighting="none")
         window, renderer = self._plotter.render_window, self._plotter.renderer
         window.SetMultiSamples(SAMPLES)
@@ -93,9 +107,9 @@ class Offscreen:
     def scale_for(self, width: int, height: int) -> float:
         """Return how many pixels of a picture a logical pixel of the window takes.
 
-        All that the window shows is in the picture; one of another shape shows more beside it.
+        All of the region is in the picture; one of another shape shows more beside it.
         """
-        return min(width / self._view[0], height / self._view[1])
+        return min(width / self._region[0], height / self._region[1])
 
     def tiles(self, width: int, height: int) -> Iterator[Tile]:
         """Render a picture of a size, tile by tile; one may reach over the right or lower edge.
@@ -113,16 +127,18 @@ class Offscreen:
         across, down = (_share(length, self._tile) for length in (width, height))
         window.SetSize(across, down)
         # In logical pixels, and so of more than the window where the picture's shape is another.
-        part = down / scale / self._view[1]
+        part = down / scale / self._canvas_height
         tangent = math.tan(math.radians(self._angle) / 2) * part
         self.camera.SetViewAngle(2 * math.degrees(math.atan(tangent)))
         self.camera.SetParallelScale(self._scale * part)
         # All tiles are cut at one depth.
         renderer.ResetCameraClippingRange()
         corners = [(x, y) for y in range(0, height, down) for x in range(0, width, across)]
+        aside, below = 2 * scale * self._beside.x(), 2 * scale * self._beside.y()
         for done, (left, top) in enumerate(corners, start=1):
             self.camera.SetWindowCenter(
-                (2 * left + across - width) / across, (height - 2 * top - down) / down
+                (2 * left + across - width + aside) / across,
+                (height - 2 * top - down - below) / down,
             )
             window.Render()
             yield Tile(left, top, _read(window, across, down), done / len(corners))

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from qtpy.QtCore import QPoint, QRect, Qt
+from qtpy.QtCore import QPoint, QRect, QRectF, Qt
 from qtpy.QtGui import QColor, QImage, QLinearGradient, QPainter, QRegion
 from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
-from pinwarp.gui.exporting.offscreen import Offscreen, Tile
+from pinwarp.gui.exporting.offscreen import Offscreen, Tile, whole_of
 from pinwarp.gui.painted.legend import PaintedLegend
 from pinwarp.gui.painted.marker_layer import MarkerLayer
 from pinwarp.gui.scene.drawables import (
@@ -35,7 +35,7 @@ from pinwarp.gui.views.canvas import Canvas
 LARGEST = 16_384
 # 800 MB while it is made.
 MOST_PIXELS = 200_000_000
-_FORMAT = QImage.Format.Format_RGBA8888_Premultiplied
+FORMAT = QImage.Format.Format_RGBA8888_Premultiplied
 
 
 @dataclass(frozen=True)
@@ -56,6 +56,10 @@ class PictureOrder:
         Whether titles, scale bars and the legend of a map are painted.
     transparent
         Whether there is nothing behind the bones, else the window's background.
+    filled
+        Whether it is cut to the bones, else all that the views show is in it.
+    is_sized
+        Whether somebody chose the size, else it follows what is shown.
     """
 
     width: int = 2400
@@ -65,9 +69,13 @@ class PictureOrder:
     names: bool = False
     framed: bool = True
     transparent: bool = False
+    filled: bool = True
+    is_sized: bool = False
 
 
-def picture_steps(order: PictureOrder, views: Mapping[Side, Canvas]) -> Steps:
+def picture_steps(
+    order: PictureOrder, views: Mapping[Side, Canvas], regions: Mapping[Side, QRectF]
+) -> Steps:
     """Make a picture in small steps.
 
     Parameters
@@ -76,6 +84,8 @@ def picture_steps(order: PictureOrder, views: Mapping[Side, Canvas]) -> Steps:
         What it shows.
     views
         What is pictured; copied at the first step.
+    regions
+        The part of each that is shown, in its logical pixels.
 
     Yields
     ------
@@ -90,14 +100,17 @@ def picture_steps(order: PictureOrder, views: Mapping[Side, Canvas]) -> Steps:
     PinwarpError
         When there is too little memory for it.
     """
-    image = QImage(order.width, order.height, _FORMAT)
+    image = QImage(order.width, order.height, FORMAT)
     if image.isNull():
         raise _too_large(order)
     image.fill(Qt.GlobalColor.transparent)
-    places = _places(order)
+    places = _places(order, regions)
     for side, place in places.items():
-        _paint_signs(image, views[side], _painted(order, views[side]), place)
-    copies = {side: Offscreen(views[side], views[side].scene) for side in order.sides}
+        paint_signs(image, views[side], _painted(order, views[side]), place, regions[side])
+    copies = {
+        side: Offscreen(views[side], views[side].scene, region=regions[side])
+        for side in order.sides
+    }
     yield 0.0, "rendering"
     try:
         for number, (side, place) in enumerate(places.items()):
@@ -126,9 +139,9 @@ def picture_of(view: Canvas, scene: Scene, width: int, height: int) -> QImage:
     width, height
         In pixels.
     """
-    image = QImage(width, height, _FORMAT)
+    image = QImage(width, height, FORMAT)
     image.fill(Qt.GlobalColor.transparent)
-    _paint_signs(image, view, scene, image.rect())
+    paint_signs(image, view, scene, image.rect())
     copy = Offscreen(view, scene)
     try:
         for tile in copy.tiles(width, height):
@@ -153,7 +166,7 @@ def _below(image: QImage) -> QPainter:
 
 def _paint_below(image: QImage, place: QRect, tile: Tile) -> None:
     rows, columns = tile.pixels.shape[:2]
-    rendered = QImage(tile.pixels.data, columns, rows, 4 * columns, _FORMAT)
+    rendered = QImage(tile.pixels.data, columns, rows, 4 * columns, FORMAT)
     with _below(image) as painter:
         painter.setClipRect(place)
         painter.drawImage(place.topLeft() + QPoint(tile.left, tile.top), rendered)
@@ -172,22 +185,41 @@ def _too_large(order: PictureOrder) -> PinwarpError:
     return PinwarpError(f"There is too little memory for {size} pixels: choose a smaller size.")
 
 
-def _places(order: PictureOrder) -> dict[Side, QRect]:
-    """Return where in the picture each view is."""
-    edges = np.linspace(0, order.width, len(order.sides) + 1).astype(int).tolist()
+def _places(order: PictureOrder, regions: Mapping[Side, QRectF]) -> dict[Side, QRect]:
+    """Return where in the picture each view is: as wide as what it shows."""
+    widths = [regions[side].width() for side in order.sides]
+    edges = np.round(np.cumsum([0.0, *widths]) / sum(widths) * order.width).astype(int).tolist()
     return {
         side: QRect(left, 0, right - left, order.height)
         for side, left, right in zip(order.sides, edges, edges[1:], strict=False)
     }
 
 
-def _paint_signs(image: QImage, view: Canvas, scene: Scene, place: QRect) -> None:
-    """Paint the landmarks, title and scale bar of a scene over a place in a picture."""
-    width, height = max(1, view.width()), max(1, view.height())
+def paint_signs(
+    image: QImage, view: Canvas, scene: Scene, place: QRect, region: QRectF | None = None
+) -> None:
+    """Paint what a scene holds for the sheet over a place in a picture.
+
+    Parameters
+    ----------
+    image, place
+        Where.
+    view
+        From where it is seen.
+    scene
+        What is painted: landmarks, title, scale bar, legend.
+    region
+        The part of the view that the place shows, in logical pixels; all of it when None.
+    """
+    region = whole_of(view) if region is None else region
+    width, height = region.width(), region.height()
     scale = min(place.width() / width, place.height() / height)
     layer = MarkerLayer(view, view)
     layer.resize(round(place.width() / scale), round(place.height() / scale))
-    layer.offset = ((layer.width() - width) / 2, (layer.height() - height) / 2)
+    layer.offset = (
+        (layer.width() - width) / 2 - region.left(),
+        (layer.height() - height) / 2 - region.top(),
+    )
     layer.pixels_per_pixel = scale / layer.devicePixelRatioF()
     # Colours without it say little.
     legend = PaintedLegend(layer)
@@ -211,7 +243,7 @@ def _painted(order: PictureOrder, view: Canvas) -> Scene:
         return scene
     # What is selected just now is of no interest later; names behind the bone cover others.
     markers = tuple(
-        replace(marker, selected=False, labelled=order.names and not hidden)
+        replace(marker, selected=False, pointed_at=False, labelled=order.names and not hidden)
         for marker, hidden in zip(signs.markers, view.layer.hidden().tolist(), strict=True)
     )
     return scene.with_(replace(signs, markers=markers))

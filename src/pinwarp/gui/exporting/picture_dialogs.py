@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
-from qtpy.QtCore import Qt
+from qtpy.QtCore import QSignalBlocker, Qt
 from qtpy.QtGui import QIcon
 from qtpy.QtWidgets import (
     QCheckBox,
@@ -22,9 +23,10 @@ from qtpy.QtWidgets import (
 
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.exporting import animation, picture
-from pinwarp.gui.exporting.animation import AnimationOrder, Motion
+from pinwarp.gui.exporting.animation import AnimationOrder, Format, Motion
 from pinwarp.gui.exporting.picture import PictureOrder
 from pinwarp.gui.style import theme
+from pinwarp.io.animation import ENCODER_MISSING, has_encoder
 
 # Smaller ones have no room for a label.
 SMALLEST = 64
@@ -38,6 +40,9 @@ _MOTIONS = (
     ("The destination, turned once round", Motion.TURN),
     ("From the aligned source to the warp and back", Motion.BLEND),
 )
+_FORMATS = (("GIF", Format.GIF), ("MP4", Format.MP4))
+# GIF counts in hundredths of a second.
+_GIF_RATE, _MP4_RATE = 50, 120
 
 
 class _SizeDialog(QDialog):
@@ -102,9 +107,18 @@ class PictureDialog(_SizeDialog):
         What is proposed.
     parent
         The window.
+    sized
+        Gives an order the size that suits it, unless somebody chose one.
     """
 
-    def __init__(self, order: PictureOrder, parent: QWidget) -> None:
+    def __init__(
+        self,
+        order: PictureOrder,
+        parent: QWidget,
+        sized: Callable[[PictureOrder], PictureOrder],
+    ) -> None:
+        self._sized = sized
+        self._is_sized = order.is_sized
         super().__init__("Export a picture", order.width, order.height, picture.LARGEST, parent)
         self.view = QComboBox()
         for words, sides in _VIEWS:
@@ -114,20 +128,26 @@ class PictureDialog(_SizeDialog):
         self.names = QCheckBox("&Names of those in front")
         self.framed = QCheckBox("&Title and scale bar")
         self.transparent = QCheckBox("Transparent &background")
+        self.filled = QCheckBox("&Cut to the bones")
+        self.filled.setToolTip("Else all that the views show")
         for box, on in (
             (self.landmarks, order.landmarks),
             (self.names, order.names),
             (self.framed, order.framed),
             (self.transparent, order.transparent),
+            (self.filled, order.filled),
         ):
             box.setChecked(on)
         self.form.addRow("&View", self.view)
-        for row, box in enumerate((self.landmarks, self.names, self.framed, self.transparent)):
+        boxes = (self.landmarks, self.names, self.framed, self.transparent, self.filled)
+        for row, box in enumerate(boxes):
             self.form.addRow("Show" if not row else "", box)
-        for signal in (self.image_width.valueChanged, self.image_height.valueChanged):
-            signal.connect(lambda _value: self._show())
-        self.landmarks.toggled.connect(lambda _on: self._show())
-        self._show()
+        for size in (self.image_width, self.image_height):
+            size.valueChanged.connect(self._on_size_chosen)
+        for box in boxes:
+            box.toggled.connect(self._on_change)
+        self.view.currentIndexChanged.connect(self._on_change)
+        self._on_change()
 
     @property
     def order(self) -> PictureOrder:
@@ -140,7 +160,24 @@ class PictureDialog(_SizeDialog):
             names=self.names.isChecked() and self.landmarks.isChecked(),
             framed=self.framed.isChecked(),
             transparent=self.transparent.isChecked(),
+            filled=self.filled.isChecked(),
+            is_sized=self._is_sized,
         )
+
+    def _on_size_chosen(self, _value: int) -> None:
+        self._is_sized = True
+        self._show()
+
+    def _on_change(self, _value: object = None) -> None:
+        """Follow with the size what is shown, as long as nobody chose one."""
+        proposal = self._sized(self.order)
+        for box, length in (
+            (self.image_width, proposal.width),
+            (self.image_height, proposal.height),
+        ):
+            with QSignalBlocker(box):
+                box.setValue(length)
+        self._show()
 
     def _show(self) -> None:
         self.names.setEnabled(self.landmarks.isChecked())
@@ -178,9 +215,15 @@ class AnimationDialog(_SizeDialog):
         self.seconds.setDecimals(1)
         self.seconds.setSuffix(" s")
         self.seconds.setValue(order.seconds)
+        self.format = QComboBox()
+        for words, kind in _FORMATS:
+            self.format.addItem(words, kind.value)
+        self.format.setCurrentIndex([kind for _, kind in _FORMATS].index(order.format))
         self.form.insertRow(0, "&Show", self.motion)
         self.form.addRow("&Frames", self.frames)
         self.form.addRow("&Duration", self.seconds)
+        self.form.addRow("File &type", self.format)
+        self.format.currentIndexChanged.connect(lambda _row: self._show())
         for box in (self.image_width, self.image_height, self.frames, self.seconds):
             box.valueChanged.connect(lambda _value: self._show())
         self._order = order
@@ -196,23 +239,29 @@ class AnimationDialog(_SizeDialog):
             height=self.image_height.value(),
             frames=self.frames.value(),
             seconds=self.seconds.value(),
+            format=_FORMATS[self.format.currentIndex()][1],
         )
 
     def _show(self) -> None:
         order = self.order
         rate = order.frames / order.seconds
-        if order.pixels > animation.MOST_PIXELS:
+        is_gif = order.format is Format.GIF
+        fastest = _GIF_RATE if is_gif else _MP4_RATE
+        if not (is_gif or has_encoder()):
+            self._say(f"{ENCODER_MISSING}.", possible=False)
+        elif order.pixels > animation.MOST_PIXELS:
             share = animation.MOST_PIXELS / order.pixels
             self._say(
                 f"That is too much for the memory: choose at most "
                 f"{max(2, int(order.frames * share))} frames of this size, or a smaller one.",
                 possible=False,
             )
-        elif rate > 50:
+        elif rate > fastest:
             self._say(
-                f"GIF shows at most 50 frames a second, and these are {rate:.0f}: choose a "
-                "longer duration or fewer frames.",
+                f"{order.format.name} shows at most {fastest} frames a second, and these are "
+                f"{rate:.0f}: choose a longer duration or fewer frames.",
                 possible=False,
             )
         else:
-            self._say(f"{rate:.0f} frames a second, repeated for ever.", possible=True)
+            how = ", repeated for ever" if is_gif else ""
+            self._say(f"{rate:.0f} frames a second{how}.", possible=True)

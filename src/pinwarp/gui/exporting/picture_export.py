@@ -11,13 +11,22 @@ from qtpy.QtWidgets import QDialog, QWidget
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
-from pinwarp.gui.exporting.animation import AnimationOrder, Ends, Motion, animation_steps, ends_of
+from pinwarp.gui.exporting.animation import (
+    AnimationOrder,
+    Ends,
+    Format,
+    Motion,
+    animation_steps,
+    ends_of,
+)
+from pinwarp.gui.exporting.offscreen import whole_of
 from pinwarp.gui.exporting.picture import PictureOrder, picture_steps
 from pinwarp.gui.exporting.picture_dialogs import AnimationDialog, PictureDialog
+from pinwarp.gui.exporting.region import proposed, regions_of
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import FileTasks, Progress
 from pinwarp.gui.views.canvas import Canvas
-from pinwarp.io.animation import Frame, write_gif
+from pinwarp.io.animation import Frame, write_gif, write_mp4
 from pinwarp.io.atomic import atomic_path
 from pinwarp.session.editor import Editor
 from pinwarp.session.warp.provenance import provenance
@@ -77,7 +86,9 @@ class PictureExport(Capability):
 
     def ask_for_picture(self) -> None:
         """Ask what a picture is to show."""
-        dialog = PictureDialog(self._picture, self._window)
+        dialog = PictureDialog(
+            self._picture, self._window, lambda order: proposed(order, self._views)
+        )
         dialog.accepted.connect(lambda: self._make_picture(dialog.order))
         self._open(dialog)
 
@@ -108,12 +119,16 @@ class PictureExport(Capability):
                 ),
             )
 
+        if order.filled:
+            regions = regions_of(order, self._views)
+        else:
+            regions = {side: whole_of(self._views[side]) for side in order.sides}
         title = f"Exporting {path.name}"
-        self._tasks.run_steps(title, picture_steps(order, self._views), rendered)
+        self._tasks.run_steps(title, picture_steps(order, self._views, regions), rendered)
 
     def _make_animation(self, order: AnimationOrder) -> None:
         self._animation = order
-        path = self._ask_save("Export an animation", "gif", "Animations")
+        path = self._ask_save("Export an animation", order.format.value, "Animations")
         if path is None:
             return
         title, view = f"Exporting {path.name}", self._views[Side.DESTINATION]
@@ -123,9 +138,11 @@ class PictureExport(Capability):
         if order.motion is Motion.BLEND:
             what = f", to {warp_in_words(session)}"
 
+        write_file = write_gif if order.format is Format.GIF else write_mp4
+
         def rendered(frames: list[Frame]) -> None:
             def write(progress: Progress) -> None:
-                write_gif(path, frames, order.seconds, remarks=made, progress=progress)
+                write_file(path, frames, order.seconds, remarks=made, progress=progress)
 
             self._tasks.run(
                 title,

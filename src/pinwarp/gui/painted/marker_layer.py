@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from qtpy.QtCore import QPointF, QRectF, Qt, QTimer
+from qtpy.QtCore import QPointF, QRectF, QSizeF, Qt, QTimer
 from qtpy.QtGui import QColor, QPainter, QPaintEvent
 from qtpy.QtWidgets import QWidget
 
@@ -25,6 +25,7 @@ from pinwarp.gui.painted.captions import (
     paint_next_click,
     paint_tool_words,
 )
+from pinwarp.gui.painted.labels import Labels, draw_label_below
 from pinwarp.gui.painted.legend import PaintedLegend
 from pinwarp.gui.painted.markers import (
     FAINT,
@@ -33,8 +34,6 @@ from pinwarp.gui.painted.markers import (
     STAR_RADIUS,
     draw_crosshair,
     draw_ghost,
-    draw_label,
-    draw_label_below,
     draw_star,
     extent,
     marker_pixmap,
@@ -90,6 +89,7 @@ class MarkerLayer(QWidget):
         super().__init__(parent)
         self._projection = projection
         self._legend: PaintedLegend | None = None
+        self._labels = Labels()
         self._scene = Scene(Side.SOURCE)
         self.semilandmarks = points = SemilandmarkPainter(projection, self._project)
         self._model = ModelPainter(projection, self._project)
@@ -214,6 +214,7 @@ class MarkerLayer(QWidget):
         self._from_right = set()
         with QPainter(self) as painter:
             painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            self._begin_labels(painter)
             for kind, paint in self._painters.items():
                 thing = self._scene.of(kind)
                 if thing is not None:
@@ -231,6 +232,11 @@ class MarkerLayer(QWidget):
         """Paint the crosshair that the arrow keys move; None takes it away."""
         self._crosshair = at
         self.update()
+
+    def _begin_labels(self, painter: QPainter) -> None:
+        legend = self._legend
+        beside = QRectF(legend.geometry()) if legend is not None and legend.has_room else None
+        self._labels.begin(painter, QSizeF(self.size()), beside)
 
     def _on_rest(self) -> None:
         self.semilandmarks.is_resting = self._model.is_resting = True
@@ -269,7 +275,7 @@ class MarkerLayer(QWidget):
         for words, position in elements.labels:
             ((x, y),) = self._project([position])
             at = QPointF(x, y)
-            draw_label(painter, words, at, self.room_at(at))
+            self._labels.draw(painter, words, at, always=False)
 
     def _paint_dots(self, painter: QPainter, dots: Dots) -> None:
         self.semilandmarks.paint_dots(painter, dots, self._ratio)
@@ -298,7 +304,7 @@ class MarkerLayer(QWidget):
         painter.setOpacity(1.0)
         # Said, too: a ring may look faint for other reasons.
         words = f"{ghost.name}? (behind)" if hidden else f"{ghost.name}?"
-        draw_label(painter, words, at, self.room_at(at))
+        self._labels.draw(painter, words, at)
 
     def _paint_other_ghosts(self, painter: QPainter, others: OtherGhosts) -> None:
         """Paint smaller rings without names, in discs that leave the bone to be seen."""
@@ -312,7 +318,7 @@ class MarkerLayer(QWidget):
             draw_ghost(painter, QPointF(*place), GHOST_RADIUS - 3)
             if ghost.name == others.labelled:
                 at = QPointF(*place)
-                draw_label(painter, f"{ghost.name}?", at, self.room_at(at))
+                self._labels.draw(painter, f"{ghost.name}?", at)
         painter.setOpacity(1.0)
 
     def _paint_doubt(self, painter: QPainter, ghost: Ghost, at: QPointF, alpha: float) -> None:
@@ -334,7 +340,7 @@ class MarkerLayer(QWidget):
         painter.setOpacity(0.5 if hidden else 1.0)
         draw_ghost(painter, at, radius)
         painter.setOpacity(1.0)
-        draw_label(painter, counterpart.name, at, self.room_at(at), radius)
+        self._labels.draw(painter, counterpart.name, at, radius)
 
     def _paint_star(self, painter: QPainter, star: Star) -> None:
         """Paint a star in a dotted ring where the next landmark helps most."""
@@ -345,7 +351,7 @@ class MarkerLayer(QWidget):
         painter.setOpacity(0.5 if hidden else 1.0)
         draw_star(painter, at)
         words = f"next landmark helps most here (± {suggestion.deviation:.2g} {star.unit})"
-        draw_label_below(painter, words, at, self.room_at(at), STAR_RADIUS)
+        self._labels.keep_free(draw_label_below(painter, words, at, self.room_at(at), STAR_RADIUS))
         painter.setOpacity(1.0)
 
     def room_at(self, at: QPointF) -> float:
@@ -391,12 +397,17 @@ class MarkerLayer(QWidget):
             pixmap = marker_pixmap(marker.state, marker.selected, bool(hidden[i]), ratio, radius)
             x, y = places[i] - extent(radius) / 2
             painter.drawPixmap(QPointF(x, y), pixmap)
-        for i in order:
-            if markers[i].labelled:
-                painter.setOpacity(0.5 if hidden[i] else 1.0)
-                at = QPointF(*places[i])
-                name = markers[i].name
-                draw_label(
-                    painter, name, at, self.room_at(at), radius, leftwards=name in self._from_right
-                )
+        named = [i for i in range(len(markers)) if markers[i].labelled]
+        # What is pointed at keeps its name in a crowd, what lies behind the bone least of all.
+        for i in sorted(named, key=lambda i: (not markers[i].pointed_at, hidden[i])):
+            name = markers[i].name
+            painter.setOpacity(0.5 if hidden[i] else 1.0)
+            self._labels.draw(
+                painter,
+                name,
+                QPointF(*places[i]),
+                radius,
+                leftwards=name in self._from_right,
+                always=markers[i].pointed_at,
+            )
         painter.setOpacity(1.0)

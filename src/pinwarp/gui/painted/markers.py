@@ -119,52 +119,6 @@ def draw_star(painter: QPainter, at: QPointF) -> None:
     painter.drawPolygon(star)
 
 
-def draw_label(
-    painter: QPainter,
-    text: str,
-    at: QPointF,
-    room: float,
-    radius: float = RADIUS,
-    *,
-    leftwards: bool = False,
-) -> QRectF:
-    """Write a label beside a point, on a paper plate so that it reads on any bone.
-
-    It stands on the right, or on the left where it is asked to or where it would leave the room
-    (the picture's width).
-    """
-    metrics = painter.fontMetrics()
-    plate = QRectF(
-        at.x() + radius + 7,
-        at.y() - metrics.height() / 2 - 2,
-        metrics.horizontalAdvance(text) + 12,
-        metrics.height() + 4,
-    )
-    if leftwards or plate.right() > room - 2:
-        # Never beyond the left edge, where a long label would lose its beginning.
-        plate.moveRight(max(min(at.x() - radius - 7, room - 2), plate.width() + 2))
-    _draw_plate(painter, plate, text)
-    return plate
-
-
-def draw_label_below(painter: QPainter, text: str, at: QPointF, room: float, radius: float) -> None:
-    """Write a long label below a place, within the picture's width."""
-    metrics = painter.fontMetrics()
-    width = metrics.horizontalAdvance(text) + 12
-    left = max(min(at.x() - width / 2, room - width - 2), 2.0)
-    _draw_plate(painter, QRectF(left, at.y() + radius + 5, width, metrics.height() + 4), text)
-
-
-def _draw_plate(painter: QPainter, plate: QRectF, text: str) -> None:
-    paper = QColor(theme.PAPER)
-    paper.setAlphaF(0.88)
-    painter.setPen(QPen(QColor(0, 0, 0, 40), 1))
-    painter.setBrush(paper)
-    painter.drawRoundedRect(plate, 4, 4)
-    painter.setPen(QColor(theme.INK))
-    painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, text)
-
-
 def draw_crosshair(painter: QPainter, at: QPointF) -> None:
     """Draw the crosshair that the arrow keys move, dark within light: seen on anything."""
     inner, outer = 4.0, 16.0

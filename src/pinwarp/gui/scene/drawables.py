@@ -135,7 +135,7 @@ class GridLines:
 
 @dataclass(frozen=True)
 class Marker:
-    """One landmark in one viewport."""
+    """One landmark in one viewport; one that is pointed at has its name however little room is."""
 
     name: str
     position: Position
@@ -143,6 +143,7 @@ class Marker:
     selected: bool = False
     labelled: bool = False
     movable: bool = True
+    pointed_at: bool = False
 
 
 @dataclass(frozen=True)

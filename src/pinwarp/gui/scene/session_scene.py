@@ -153,12 +153,13 @@ def _marker(
     movable: bool = True,
 ) -> Marker:
     selected = landmark.name in selection.names
+    pointed_at = landmark.name in (view.hovered, view.guided)
     return Marker(
         name=landmark.name,
         position=position,
         state=landmark.state,
         selected=selected,
-        labelled=landmark.name in (view.hovered, view.guided)
-        or (selected and len(selection.names) <= MOST_LABELS),
+        labelled=pointed_at or (selected and len(selection.names) <= MOST_LABELS),
         movable=movable and not view.locked and not landmark.locked,
+        pointed_at=pointed_at,
     )
