@@ -73,7 +73,8 @@ def _region(order: PictureOrder, view: Canvas) -> QRectF:
     region.adjust(-_AROUND, -_AROUND, _AROUND, _AROUND)
     if order.landmarks and order.names:
         names = [marker.name for marker in _markers(view)]
-        region.setRight(region.right() + max(map(metrics.horizontalAdvance, names), default=0))
+        longest = max(map(metrics.horizontalAdvance, names), default=0)
+        region.adjust(-longest, 0, longest, 0)
     if order.framed:
         region.adjust(0, -_LINES_ABOVE * words, 0, _LINES_BELOW * words)
         if view.scene.of(Legend) is not None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 
+from numpy.typing import NDArray
 from qtpy.QtCore import QPointF, QRectF, QSizeF, Qt
 from qtpy.QtGui import QColor, QFontMetricsF, QPainter, QPen
 
@@ -30,6 +32,8 @@ _PLACES = (
     (-1, -1.6),
     (-1, 1.6),
 )
+_Box = tuple[float, float, float, float]
+_Bands = defaultdict[int, list[_Box]]
 _LEFTWARDS = tuple(sorted(_PLACES, key=lambda place: (abs(place[1]), place[0])))
 
 
@@ -45,7 +49,9 @@ class Labels:
         self._legend: QRectF | None = None
         # Plates that stand, in bands of one height: only neighbours are compared.
         self._band = 1.0
-        self._bands: defaultdict[int, list[tuple[float, float, float, float]]] = defaultdict(list)
+        self._plates: _Bands = defaultdict(list)
+        # Of signs, which a name covers only where it finds no other place.
+        self._signs: _Bands = defaultdict(list)
         self._stood: dict[str, tuple[int, float]] = {}
         self._stand: dict[str, tuple[int, float]] = {}
 
@@ -63,14 +69,32 @@ class Labels:
         """
         self._sheet, self._legend = sheet, legend
         self._band = QFontMetricsF(painter.font()).height() + 4 + _APART
-        self._bands.clear()
+        self._plates.clear()
+        self._signs.clear()
         self._stood, self._stand = self._stand, {}
 
     def keep_free(self, plate: QRectF) -> None:
         """Let no name stand on a plate."""
         box = (plate.left(), plate.top(), plate.right(), plate.bottom())
+        self._add(self._plates, box)
+
+    def spare(self, places: NDArray, radius: float) -> None:
+        """Let names stand on signs only where they find no other place.
+
+        Parameters
+        ----------
+        places
+            (n, 2) middles of the signs.
+        radius
+            Of all of them.
+        """
+        for x, y in places.tolist():
+            if math.isfinite(x + y):
+                self._add(self._signs, (x - radius, y - radius, x + radius, y + radius))
+
+    def _add(self, bands: _Bands, box: _Box) -> None:
         for band in range(int(box[1] // self._band), int(box[3] // self._band) + 1):
-            self._bands[band].append(box)
+            bands[band].append(box)
 
     def draw(
         self,
@@ -107,15 +131,22 @@ class Labels:
         place = (at.x(), at.y())
         usual = _LEFTWARDS if leftwards else _PLACES
         before = self._stood.get(text)
+        # The first that is free, or else the first that covers only signs.
+        second: tuple[tuple[int, float], _Box] | None = None
         for where in usual if before is None else (before, *usual):
             plate = self._plate(where, place, size, radius)
-            if self._is_inside(plate) and self._is_free(plate):
-                self._stand[text] = where
-                break
+            if self._is_inside(plate) and self._is_free(self._plates, plate):
+                if self._is_free(self._signs, plate):
+                    self._stand[text] = where
+                    break
+                second = second or (where, plate)
         else:
-            plate = self._pushed_inside(usual[0], place, size, radius)
-            if not always and not self._is_free(plate):
-                return QRectF()
+            if second is not None:
+                self._stand[text], plate = second
+            else:
+                plate = self._pushed_inside(usual[0], place, size, radius)
+                if not always and not self._is_free(self._plates, plate):
+                    return QRectF()
         found = QRectF(plate[0], plate[1], size[0], size[1])
         self.keep_free(found)
         draw_plate(painter, found, text)
@@ -127,7 +158,7 @@ class Labels:
         at: tuple[float, float],
         size: tuple[float, float],
         radius: float,
-    ) -> tuple[float, float, float, float]:
+    ) -> _Box:
         """Return the left, top, right and bottom of a plate."""
         across, down = where
         (x, y), (width, height) = at, size
@@ -146,7 +177,7 @@ class Labels:
         at: tuple[float, float],
         size: tuple[float, float],
         radius: float,
-    ) -> tuple[float, float, float, float]:
+    ) -> _Box:
         """Return a plate beside a sign, within the sheet."""
         _, top, right, bottom = plate = self._plate(where, at, size, radius)
         room = self._room(top, bottom) - _EDGE
@@ -163,7 +194,7 @@ class Labels:
             return self._sheet.width()
         return legend.left()
 
-    def _is_inside(self, plate: tuple[float, float, float, float]) -> bool:
+    def _is_inside(self, plate: _Box) -> bool:
         left, top, right, bottom = plate
         return (
             left >= _EDGE
@@ -172,10 +203,10 @@ class Labels:
             and right <= self._room(top, bottom) - _EDGE
         )
 
-    def _is_free(self, plate: tuple[float, float, float, float]) -> bool:
+    def _is_free(self, bands: _Bands, plate: _Box) -> bool:
         left, top, right, bottom = plate
         for band in range(int(top // self._band), int(bottom // self._band) + 1):
-            for box in self._bands.get(band, ()):
+            for box in bands.get(band, ()):
                 if (
                     left < box[2] + _APART
                     and right > box[0] - _APART

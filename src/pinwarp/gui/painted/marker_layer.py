@@ -398,6 +398,8 @@ class MarkerLayer(QWidget):
             x, y = places[i] - extent(radius) / 2
             painter.drawPixmap(QPointF(x, y), pixmap)
         named = [i for i in range(len(markers)) if markers[i].labelled]
+        if named:
+            self._labels.spare(places[~hidden], radius)
         # What is pointed at keeps its name in a crowd, what lies behind the bone least of all.
         for i in sorted(named, key=lambda i: (not markers[i].pointed_at, hidden[i])):
             name = markers[i].name
