@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from qtpy.QtCore import Qt
 from qtpy.QtGui import QColor, QImage, QPalette
+from qtpy.QtTest import QTest
 from qtpy.QtWidgets import (
     QAbstractButton,
     QCheckBox,
@@ -17,11 +18,14 @@ from qtpy.QtWidgets import (
     QSlider,
     QStyle,
     QStyleOptionSlider,
+    QStyleOptionTab,
+    QTabBar,
     QToolButton,
     QWidget,
 )
 
 from pinwarp.core.landmarks import Side
+from pinwarp.gui.style.theme import SOURCE_COLOUR, WRAP_COLOUR, backgrounds
 
 # Of text, and of what is pressed or moved, against what is around (WCAG 2.2, 1.4.3 and 1.4.11).
 READABLE, VISIBLE = 4.5, 3.0
@@ -112,6 +116,42 @@ def test_all_words_can_be_read(sample):
                 if measured < READABLE:
                     pale[label.text()] = measured
     assert pale == {}
+
+
+def test_the_buttons_of_a_panels_title_stand_out(sample):
+    names = ("qt_dockwidget_floatbutton", "qt_dockwidget_closebutton")
+    docks = [x for x in sample.window.findChildren(QDockWidget) if x.titleBarWidget() is None]
+    assert docks
+    for dock in docks:
+        for button in (dock.findChild(QAbstractButton, name) for name in names):
+            assert button.isVisible()
+            assert greatest_contrast(pixels(button)) >= VISIBLE, button.objectName()
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_wraps_of_a_model_stand_out_from_either_background_and_from_ivory(dark):
+    names = (*backgrounds(dark), SOURCE_COLOUR, WRAP_COLOUR)
+    *around, ink = (luminances(np.array(QColor(name).getRgbF()[:3])) for name in names)
+    assert min(contrast(ink, one) for one in around) >= VISIBLE
+
+
+def test_no_title_of_a_panel_is_cut_at_the_size_in_which_a_window_opens(sample):
+    model = next(x for x in sample.window.findChildren(QDockWidget) if x.objectName() == "model")
+    model.show()
+    sample.settle()
+    tabs = next(
+        bar for bar in sample.window.findChildren(QTabBar) if bar.isVisible() and bar.count() == 6
+    )
+    # The front one needs most: each in turn.
+    for row in range(tabs.count()):
+        QTest.mouseClick(tabs, Qt.MouseButton.LeftButton, pos=tabs.tabRect(row).center())
+        sample.settle()
+        for other in range(tabs.count()):
+            words = tabs.fontMetrics().horizontalAdvance(tabs.tabText(other))
+            room = QStyleOptionTab()
+            tabs.initStyleOption(room, other)
+            assert room.text == tabs.tabText(other), "shortened"
+            assert tabs.tabRect(other).width() >= words + 16
 
 
 def test_the_handle_of_every_slider_stands_out_from_its_groove(sample):

@@ -31,13 +31,19 @@ def window_sheet(palette: QPalette) -> str:
     dark = theme.is_dark()
     edge, faint = ("#a0a6ae", "#62676e") if dark else ("#6b727b", "#b9bec4")
     handle, pressed = (text, "#235c93") if dark else (base, "#c3d9ee")
-    tick = (assets_folder() / "icons" / f"tick_{'light' if dark else 'dark'}.svg").as_posix()
+    tick, close, detach = (
+        (assets_folder() / "icons" / f"{name}_{'light' if dark else 'dark'}.svg").as_posix()
+        for name in ("tick", "close", "detach")
+    )
     boxes = ("QCheckBox", "QAbstractItemView", "QGroupBox")
     box = ", ".join(f"{kind}::indicator" for kind in boxes)
     ticked = ", ".join(f"{kind}::indicator:checked" for kind in boxes)
     off = ", ".join(f"{kind}::indicator:disabled" for kind in ("QRadioButton", *boxes))
     dot = f"qradialgradient(cx:0.5, cy:0.5, radius:0.5, stop:0.45 {text}, stop:0.55 {base})"
     return f"""
+    QDockWidget {{
+        titlebar-close-icon: url({close}); titlebar-normal-icon: url({detach});
+    }}
     QSlider::groove:horizontal {{ height: 4px; border-radius: 2px; background: {faint}; }}
     QSlider::sub-page:horizontal:enabled {{ border-radius: 2px; background: {accent}; }}
     QSlider::handle:horizontal {{

@@ -47,7 +47,7 @@ FOLD_COLOUR = "#D55E00"
 # What stands on a body of a model: muscles, markers, wraps, and the axes of frames.
 MUSCLE_COLOUR = "#a3262a"
 MODEL_MARKER_COLOUR = "#0e7c86"
-WRAP_COLOUR = "#4a5fb5"
+WRAP_COLOUR = "#6577d6"
 AXIS_COLOURS = ("#c44a00", "#00703f", "#0072B2")
 
 # Maps of lengths: even steps of lightness from dark to light, told apart without red and green.

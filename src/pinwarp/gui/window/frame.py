@@ -15,6 +15,7 @@ from qtpy.QtWidgets import (
     QLabel,
     QMainWindow,
     QSplitter,
+    QStyle,
     QTabWidget,
     QToolBar,
     QVBoxLayout,
@@ -40,7 +41,7 @@ from pinwarp.gui.window.shortcut_overlay import ShortcutOverlay
 MESSAGE_MS = 6000
 # As large as a window opens where the screen has room.
 SIZE = QSize(1280, 800)
-# Of the panels at the right edge.
+# Of the panels at the right edge, at least: all their titles are read.
 RIGHT_WIDTH = 430
 # When, after it was shown, it is looked at whether it is on the screen as a whole.
 FRAME_KNOWN_MS = (0, 100, 500)
@@ -79,6 +80,7 @@ class WindowFrame(QMainWindow):
         self.progress, self.cancel = progress.bar, progress.cancel
         self.shortcuts: ShortcutOverlay | None = None
         self._fitted: list[QDockWidget] = []
+        self._right: list[QDockWidget] = []
         self._actions: Sequence[QAction] = ()
         self.setWindowIcon(icon("pinwarp"))
         self.resize(SIZE)
@@ -173,6 +175,7 @@ class WindowFrame(QMainWindow):
                 dock.hide()
         self.setTabPosition(RIGHT, QTabWidget.TabPosition.North)
         self._front = right[0]
+        self._right = right
         self._front.raise_()
         # The table keeps the whole height of the right edge, unless large text needs the width.
         below = [panel.widget for panel in panels if panel.area != RIGHT]
@@ -181,9 +184,17 @@ class WindowFrame(QMainWindow):
         self.setCorner(
             Qt.Corner.BottomRightCorner, RIGHT if fits else Qt.DockWidgetArea.BottomDockWidgetArea
         )
-        self.resizeDocks([self._front], [RIGHT_WIDTH], Qt.Orientation.Horizontal)
+        self._give_right_its_width()
         self._fit_docks()
         return docks
+
+    def _give_right_its_width(self) -> None:
+        """Make the right edge as wide as its tabs, those counted that are not open yet."""
+        beside = self.style().pixelMetric(QStyle.PixelMetric.PM_TabBarTabHSpace)
+        words = self.fontMetrics()
+        # A tab in front has a pixel on either side for its frame.
+        tabs = sum(words.horizontalAdvance(x.windowTitle()) + beside + 2 for x in self._right)
+        self.resizeDocks([self._front], [max(RIGHT_WIDTH, tabs)], Qt.Orientation.Horizontal)
 
     def _fit_docks(self) -> None:
         for dock in self._fitted:
@@ -261,7 +272,7 @@ class WindowFrame(QMainWindow):
         """Put docks and toolbar where they stood before anybody moved them."""
         self.restoreState(self._first_layout)
         self._front.raise_()
-        self.resizeDocks([self._front], [RIGHT_WIDTH], Qt.Orientation.Horizontal)
+        self._give_right_its_width()
         self._fit_docks()
 
     def save_layout(self, settings: QSettings) -> None:
