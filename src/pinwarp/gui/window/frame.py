@@ -275,6 +275,12 @@ class WindowFrame(QMainWindow):
         self._give_right_its_width()
         self._fit_docks()
 
+    def take_floats_away(self) -> None:
+        """Hide panels that float: they are windows of their own, and stay when theirs is closed."""
+        for dock in self.findChildren(QDockWidget):
+            if dock.isFloating():
+                dock.hide()
+
     def save_layout(self, settings: QSettings) -> None:
         """Remember where docks and window stand."""
         settings.setValue("geometry", self.saveGeometry())

@@ -91,6 +91,7 @@ class MainWindow(WindowFrame):
         self.save_layout(self._settings)
         for part in self.parts:
             part.remember(self._settings)
+        self.take_floats_away()
         for signal in self._signals:
             signal.disconnect(self._on_change)
         self.jobs.shut_down()
