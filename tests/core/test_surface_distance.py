@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from tests.core.femur import femur_landmarks, femur_meshes
 
 from pinwarp.core import kernel, surface_distance
-from pinwarp.core.errors import LandmarkError
+from pinwarp.core.errors import Cancelled, LandmarkError
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import factorise, solve
 from pinwarp.core.surface_distance import DistanceFigures, SurfaceIndex, compare_surfaces
@@ -287,3 +287,35 @@ def test_an_index_like_that_of_other_triangles_sorts_anew():
     one = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     two = Mesh([[0, 0, 5], [1, 0, 5], [0, 1, 5], [1, 1, 9]], [[0, 1, 2], [1, 2, 3]])
     assert SurfaceIndex(two, like=SurfaceIndex(one)).distances([[1, 1, 9]]).tolist() == [0.0]
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_search_and_an_index_are_stopped_at_any_checkpoint(monkeypatch, threads):
+    loops = surface_distance._compiled()
+    if loops is None:
+        pytest.skip("without numba")
+    monkeypatch.setattr(loops, "THREADS", threads)
+    monkeypatch.setattr(surface_distance, "PART", 100)
+    places = np.random.default_rng(3).normal(size=(surface_distance.WORTH_THREADS, 3))
+    mesh = Mesh(places, np.arange(len(places) // 3 * 3).reshape(-1, 3))
+    index, told = SurfaceIndex(mesh), []
+    index.distances(places, told.append)
+    assert len(told) >= 40
+    assert sorted(told) == told
+
+    def stops(share):
+        if share > 0.3:
+            raise Cancelled("Cancelled.")
+
+    searched = []
+    search = loops.closest_triangles
+    monkeypatch.setattr(
+        loops, "closest_triangles", lambda *given: (searched.append(1), search(*given))
+    )
+    with pytest.raises(Cancelled):
+        index.distances(places, stops)
+    assert len(searched) < 40
+    with pytest.raises(Cancelled):
+        SurfaceIndex(mesh, checkpoint=stops)
+    with pytest.raises(Cancelled):
+        compare_surfaces(mesh, mesh, checkpoint=stops)

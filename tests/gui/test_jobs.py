@@ -10,7 +10,8 @@ import pytest
 from qtpy.QtCore import QTimer
 from qtpy.QtWidgets import QStatusBar
 
-from pinwarp.gui.tasks.jobs import Cancelled, LatestWins, SlowJob
+from pinwarp.core.errors import Cancelled
+from pinwarp.gui.tasks.jobs import LatestWins, SlowJob
 from pinwarp.gui.tasks.progress import JobProgress
 
 
@@ -171,3 +172,35 @@ def test_nothing_is_kept_of_what_has_run(qapp, qtbot):
         stop.set()
         for thread in busy:
             thread.join()
+
+
+def test_what_is_no_longer_wanted_ends_at_its_next_checkpoint(qapp, qtbot):
+    ended = []
+
+    def compute(request):
+        try:
+            while request != "last":
+                jobs.checkpoint(0.5)
+                time.sleep(0.001)
+        except Cancelled:
+            ended.append(request)
+            raise
+        return request
+
+    jobs, arrived, failed, told = LatestWins(compute), [], [], []
+    jobs.computed.connect(arrived.append)
+    jobs.failed.connect(failed.append)
+    jobs.progressed.connect(told.append)
+    jobs.request("first")
+    qtbot.waitUntil(lambda: told == [0.5])
+    with qtbot.waitSignal(jobs.stopped):
+        jobs.stop()
+    assert jobs.is_idle
+    jobs.request("second")
+    jobs.request("last")
+    qtbot.waitUntil(lambda: jobs.is_idle)
+    assert arrived == ["last"]
+    jobs.request("third")
+    jobs.shut_down()
+    assert ended == ["first", "second", "third"]
+    assert failed == []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -16,11 +17,13 @@ from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import Side, as_position, positions
 from pinwarp.core.maps import MapKind
 from pinwarp.gui.maps.presenter import MAP_ACTIONS
-from pinwarp.gui.scene.drawables import Colouring, FoldedSurface, Ghost, Star
+from pinwarp.gui.scene.drawables import Badge, Colouring, FoldedSurface, Ghost, Star
 from pinwarp.gui.style.colour_scale import ColourScale
 from pinwarp.io.samples import assets_folder
 from pinwarp.session import edits
 from pinwarp.session.guide import with_template
+from pinwarp.session.judging import survey as surveys
+from pinwarp.session.judging.survey import Surveyor
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
 SHIFT = Qt.KeyboardModifier.ShiftModifier
@@ -506,14 +509,14 @@ def test_a_stand_in_is_coloured_like_the_mesh_it_stands_for(large):
 
 def test_a_survey_that_comes_too_late_is_dropped(sample, monkeypatch):
     maps, gate, begun = sample.window.parts.maps, threading.Event(), []
-    real = maps._surveyor.survey
+    real = Surveyor.survey
 
-    def slow(result, *args, **options):
+    def slow(self, result, *args, **options):
         begun.append(result)
         assert gate.wait(30)
-        return real(result, *args, **options)
+        return real(self, result, *args, **options)
 
-    monkeypatch.setattr(maps._surveyor, "survey", slow)
+    monkeypatch.setattr(Surveyor, "survey", slow)
     shown = []
     maps.map_changed.connect(shown.append)
     sample.window.actions_by_key["map_distance"].trigger()
@@ -532,3 +535,69 @@ def test_a_survey_that_comes_too_late_is_dropped(sample, monkeypatch):
     sample.settle()
     assert [survey.result for survey in shown] == [sample.window.parts.warps.result]
     assert is_coloured(sample)
+
+
+@pytest.fixture
+def endless(monkeypatch):
+    """The distance takes for ever, unless it is stopped at a checkpoint: that is told."""
+    ended = []
+
+    def never(*given):
+        checkpoint = given[-1]
+        try:
+            while True:
+                checkpoint(0.5)
+                time.sleep(0.002)
+        finally:
+            ended.append(True)
+
+    monkeypatch.setattr(surveys, "distance_map", never)
+    return ended
+
+
+def wait_for_the_bar(user):
+    """Choose the map that takes for ever, and wait until the panel says that it works."""
+    work = user.window.parts.maps.panel.work
+    user.window.actions_by_key["map_distance"].trigger()
+    user.qtbot.waitUntil(lambda: there(user).drawn(Badge) is not None)
+    assert not work.isHidden()
+    user.qtbot.waitUntil(lambda: work.bar.value() > 40)
+    user.qtbot.waitUntil(lambda: f"{work.bar.value()} %" in there(user).drawn(Badge).words)
+    assert there(user).drawn(Badge).words.startswith("Distance to the destination: ")
+    return work
+
+
+def test_a_slow_map_says_how_far_it_is_and_is_stopped_by_esc_or_its_button(sample, endless):
+    sample.editor.select(sample.session.pairs[0].name)
+    work = wait_for_the_bar(sample)
+    sample.press(Qt.Key.Key_Escape)
+    assert sample.editor.view.map is None
+    assert len(endless) == 1
+    assert sample.editor.selection.names, "Esc stops what is slow before it deselects"
+    assert work.isHidden()
+    assert there(sample).drawn(Badge) is None
+    sample.press(Qt.Key.Key_Escape)
+    assert not sample.editor.selection.names
+    wait_for_the_bar(sample)
+    QTest.mouseClick(work.stop, Qt.MouseButton.LeftButton)
+    sample.settle()
+    assert sample.editor.view.map is None
+    assert len(endless) == 2
+    assert work.isHidden()
+
+
+def test_a_slow_map_ends_for_another_one_for_a_drag_and_with_its_window(sample, endless):
+    work = wait_for_the_bar(sample)
+    choose(sample, MapKind.VOLUME)
+    assert len(endless) == 1
+    assert work.isHidden()
+    assert is_coloured(sample)
+    wait_for_the_bar(sample)
+    pair = sample.session.pairs[0]
+    place = as_position(np.array(pair.destination) + 1.0)
+    sample.editor.preview(edits.move(sample.session, pair.name, DESTINATION, place))
+    sample.qtbot.waitUntil(lambda: len(endless) == 2)
+    sample.editor.cancel_preview()
+    sample.qtbot.waitUntil(lambda: not work.isHidden() and work.bar.value() > 40)
+    sample.window.close()
+    assert len(endless) == 3

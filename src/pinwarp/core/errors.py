@@ -11,8 +11,9 @@
     ├── SingularSystemError (RuntimeError)      the equations have no usable solution
     ├── RangeError (ArithmeticError)    a warp that no number can hold
     ├── MeshError (ValueError)          not a surface, or not a usable one
-    └── FileFormatError (ValueError)    a file that cannot be read; names file and line
-        └── NewerFileError              written by a newer pinwarp
+    ├── FileFormatError (ValueError)    a file that cannot be read; names file and line
+    │   └── NewerFileError              written by a newer pinwarp
+    └── Cancelled                       stopped by whoever asked for it
 
     PinwarpWarning (UserWarning)
     ├── ConflictingLandmarksWarning     one place on the source, two on the destination
@@ -61,6 +62,10 @@ class PinwarpError(Exception):
 
     def __str__(self) -> str:
         return readable(super().__str__())
+
+
+class Cancelled(PinwarpError):
+    """Something slow was stopped by whoever asked for it."""
 
 
 class LandmarkError(PinwarpError, ValueError):

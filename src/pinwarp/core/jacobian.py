@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pinwarp.core import kernel
+from pinwarp.core.checkpoint import Checkpoint, go_on, parts
 from pinwarp.core.errors import RangeError
 from pinwarp.core.positions import quiet
 from pinwarp.core.spline import Spline
@@ -19,10 +20,12 @@ Matrix = NDArray[np.float64]
 
 # The third power of more, or of its reciprocal, is no number.
 LARGEST_STRETCH = 1e100
+# Terms between two checkpoints: less than a tenth of a second.
+TERMS = 4_000_000
 
 
 @quiet
-def jacobians(spline: Spline, points: ArrayLike) -> Matrix:
+def jacobians(spline: Spline, points: ArrayLike, checkpoint: Checkpoint = go_on) -> Matrix:
     """Return the derivative of the warp.
 
     Parameters
@@ -31,6 +34,8 @@ def jacobians(spline: Spline, points: ArrayLike) -> Matrix:
         The solved warp.
     points
         (m, 3) places in the source's frame and unit.
+    checkpoint
+        Passed every few million terms: what it raises ends the work.
 
     Returns
     -------
@@ -52,7 +57,11 @@ def jacobians(spline: Spline, points: ArrayLike) -> Matrix:
     True
     """
     points = kernel.as_points(points)
-    found = kernel.evaluate_jacobian(spline.source, spline.weights, spline.affine, points)
+    found = np.empty((len(points), 3, 3))
+    for part in parts(len(points), max(1, TERMS // max(1, len(spline.source))), checkpoint):
+        found[part] = kernel.evaluate_jacobian(
+            spline.source, spline.weights, spline.affine, points[part]
+        )
     largest = float(np.abs(found).max(initial=0.0))
     if not largest <= LARGEST_STRETCH or 0 < largest < 1 / LARGEST_STRETCH:
         raise RangeError(

@@ -9,6 +9,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pinwarp.core.checkpoint import Checkpoint, go_on
 from pinwarp.core.errors import RangeError
 from pinwarp.core.factor import SourceFactor
 from pinwarp.core.jacobian import stretches
@@ -151,6 +152,7 @@ def distance_map(
     destination: Mesh,
     index_warped: SurfaceIndex | None = None,
     index_destination: SurfaceIndex | None = None,
+    checkpoint: Checkpoint = go_on,
 ) -> SurfaceMap:
     """Map how far the warped source lies from the destination.
 
@@ -160,6 +162,8 @@ def distance_map(
         In the destination's frame and unit.
     index_warped, index_destination
         Their indexes, where they are built already.
+    checkpoint
+        Passed often: what it raises ends the work.
 
     Examples
     --------
@@ -169,7 +173,11 @@ def distance_map(
     [1.0, 1.0, 1.0]
     """
     compared = compare_surfaces(
-        warped, destination, index_a=index_warped, index_b=index_destination
+        warped,
+        destination,
+        index_a=index_warped,
+        index_b=index_destination,
+        checkpoint=checkpoint,
     )
     both = (compared.forward[warped.on_surface], compared.backward[destination.on_surface])
     return _map(MapKind.DISTANCE, compared.forward, *both, comparison=compared)
@@ -224,7 +232,9 @@ def stretch_maps(
     return largest, smallest
 
 
-def uncertainty_map(prediction: Prediction, mesh: Mesh) -> SurfaceMap:
+def uncertainty_map(
+    prediction: Prediction, mesh: Mesh, checkpoint: Checkpoint = go_on
+) -> SurfaceMap:
     """Map the standard deviation of one coordinate of the warp.
 
     Parameters
@@ -233,6 +243,8 @@ def uncertainty_map(prediction: Prediction, mesh: Mesh) -> SurfaceMap:
         Of the pairs, from :func:`~pinwarp.core.prediction.prediction_of`.
     mesh
         The source.
+    checkpoint
+        Passed often: what it raises ends the work.
 
     Examples
     --------
@@ -244,7 +256,7 @@ def uncertainty_map(prediction: Prediction, mesh: Mesh) -> SurfaceMap:
     >>> uncertainty_map(prediction, mesh).suggestion.position
     (9.0, 0.0, 0.0)
     """
-    values, used = prediction.standard_deviation(mesh.vertices), mesh.on_surface
+    values, used = prediction.standard_deviation(mesh.vertices, checkpoint), mesh.on_surface
     row = int(np.argmax(np.where(used, values, -1.0)))
     suggestion = Suggestion(as_position(mesh.vertices[row]), float(values[row]))
     return _map(MapKind.UNCERTAINTY, values, values[used], suggestion=suggestion)

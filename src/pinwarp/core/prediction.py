@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.distance import cdist
 
 from pinwarp.core import kernel
+from pinwarp.core.checkpoint import Checkpoint, go_on, parts
 from pinwarp.core.factor import SourceFactor, affine_coordinates, factorise
 from pinwarp.core.jacobian import determinants, jacobians
 from pinwarp.core.positions import quiet
@@ -49,7 +50,7 @@ class Prediction:
     _share: float
 
     @quiet
-    def standard_deviation(self, points: ArrayLike) -> Matrix:
+    def standard_deviation(self, points: ArrayLike, checkpoint: Checkpoint = go_on) -> Matrix:
         """Return the standard deviation of one coordinate of the warp.
 
         Were the errors normal, 20, 74 and 97 % of the true places would lie within 1, 2 and 3 of
@@ -60,6 +61,8 @@ class Prediction:
         ----------
         points
             (m, 3) places in the source's frame and unit.
+        checkpoint
+            Passed often: what it raises ends the work.
 
         Returns
         -------
@@ -69,8 +72,8 @@ class Prediction:
         points = kernel.as_points(points)
         out = np.empty(len(points))
         step = max(1, CHUNK // len(self._factor.source))
-        for first in range(0, len(points), step):
-            out[first : first + step] = self._variance(points[first : first + step])
+        for part in parts(len(points), step, checkpoint):
+            out[part] = self._variance(points[part])
         return np.asarray(self._sigma * np.sqrt(np.maximum(out, 0.0, out=out), out=out))
 
     def _variance(self, points: Matrix) -> Matrix:

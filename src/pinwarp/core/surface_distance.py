@@ -6,6 +6,7 @@ import functools
 import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import pairwise
 from types import ModuleType
 
 import numpy as np
@@ -13,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import KDTree
 
 from pinwarp.core import kernel
+from pinwarp.core.checkpoint import Checkpoint, go_on, within
 from pinwarp.core.errors import RangeError
 from pinwarp.core.lengths import rms
 from pinwarp.core.mesh import Mesh
@@ -26,6 +28,8 @@ LEAF = 4
 WORTH_COMPILING = 2000
 # Below so many places (a few milliseconds) a second thread is not worth starting.
 WORTH_THREADS = 4000
+# After so many places a search can be stopped: less than a tenth of a second where they are close.
+PART = 10_000
 # Meshes of another size, or smaller than its reciprocal, are refused.
 LARGEST_SIZE = 1e60
 # A triangle flatter than this is taken for its edges: its normal would be mostly rounding.
@@ -45,6 +49,8 @@ class SurfaceIndex:
     like
         The index of the same triangles over other vertices: what was close together there is
         mostly so here, and not to sort anew takes a third of the time.
+    checkpoint
+        Passed at every level of the tree: what it raises ends the work.
 
     Examples
     --------
@@ -53,7 +59,9 @@ class SurfaceIndex:
     [3.0, 5.0]
     """
 
-    def __init__(self, mesh: Mesh, like: SurfaceIndex | None = None) -> None:
+    def __init__(
+        self, mesh: Mesh, like: SurfaceIndex | None = None, checkpoint: Checkpoint = go_on
+    ) -> None:
         # The fourth powers of lengths are compared.
         if mesh.diagonal > LARGEST_SIZE or 0 < mesh.diagonal < 1 / LARGEST_SIZE:
             raise RangeError(
@@ -67,18 +75,22 @@ class SurfaceIndex:
         self._order: Rows = (
             like._order
             if like is not None and same
-            else _order(_lowest(corners) + _highest(corners), levels)
+            else _order(_lowest(corners) + _highest(corners), levels, checkpoint)
         )
+        checkpoint(1.0)
         self._boxes = _boxes(corners[self._order], levels)
         self._triangles = _prepared(corners[self._order])
 
-    def distances(self, places: ArrayLike) -> Matrix:
+    def distances(self, places: ArrayLike, checkpoint: Checkpoint = go_on) -> Matrix:
         """Return the distance of every place from the surface.
 
         Parameters
         ----------
         places
             (m, 3) in the frame and unit of the mesh; fastest where neighbours follow one another.
+        checkpoint
+            Passed every few thousand places, in the thread that asks: what it raises ends the
+            search.
 
         Returns
         -------
@@ -91,7 +103,7 @@ class SurfaceIndex:
             When a place is not finite (the message names its row) or the shape is another.
         """
         places = kernel.as_points(places)
-        return np.sqrt(self._search(places, self._worth(len(places)))[1])
+        return np.sqrt(self._search(places, self._worth(len(places)), checkpoint)[1])
 
     def closest(self, places: ArrayLike, *, often: bool = False) -> tuple[Matrix, Rows]:
         """Return the closest position on the surface, and the triangle that it lies in.
@@ -126,16 +138,19 @@ class SurfaceIndex:
         """Return the compiled loops where so many places are worth them."""
         return _compiled() if count + len(self._order) >= WORTH_COMPILING else None
 
-    def _search(self, places: Matrix, loops: ModuleType | None) -> tuple[Rows, Matrix]:
+    def _search(
+        self, places: Matrix, loops: ModuleType | None, checkpoint: Checkpoint = go_on
+    ) -> tuple[Rows, Matrix]:
         """Return the row in the tree of every place's closest triangle, and squared distances."""
         if loops is None:
-            return self._search_with_numpy(places)
+            return self._search_with_numpy(places, checkpoint)
         # A mesh's vertices are read-only.
         places = np.require(places, requirements="W")
         rows, squares = np.empty(len(places), np.int64), np.empty(len(places))
         threads = loops.THREADS if len(places) >= WORTH_THREADS else 1
         # Several parts a thread: far places take longer than close ones.
-        edges = np.linspace(0, len(places), 4 * threads + 1 if threads > 1 else 2).astype(int)
+        count = max(4 * threads if threads > 1 else 1, -(-len(places) // PART))
+        edges = np.linspace(0, len(places), count + 1).astype(int).tolist()
 
         def search(first: int, last: int) -> None:
             part = slice(first, last)
@@ -144,13 +159,22 @@ class SurfaceIndex:
             )
 
         if threads == 1:
-            search(0, len(places))
-        else:
-            with ThreadPoolExecutor(threads) as pool:
-                list(pool.map(search, edges[:-1].tolist(), edges[1:].tolist()))
+            for number, (first, last) in enumerate(pairwise(edges)):
+                checkpoint(number / count)
+                search(first, last)
+            return rows, squares
+        with ThreadPoolExecutor(threads) as pool:
+            searched = [pool.submit(search, first, last) for first, last in pairwise(edges)]
+            try:
+                for number, part in enumerate(searched):
+                    checkpoint(number / count)
+                    part.result()
+            finally:
+                for part in searched:
+                    part.cancel()
         return rows, squares
 
-    def _search_with_numpy(self, places: Matrix) -> tuple[Rows, Matrix]:
+    def _search_with_numpy(self, places: Matrix, checkpoint: Checkpoint) -> tuple[Rows, Matrix]:
         """Search for all places at once: each box is asked who may find something closer in it."""
         _, found = KDTree(self._triangles[:, :3]).query(places)
         rows = np.asarray(found, dtype=np.int64)
@@ -159,6 +183,7 @@ class SurfaceIndex:
         leaf = len(self._order) // leaves
         waiting = [(0, np.arange(len(places)))]
         while waiting:
+            checkpoint(0.0)
             node, who = waiting.pop()
             outside = np.maximum(self._boxes[node, :3] - places[who], 0.0)
             outside += np.maximum(places[who] - self._boxes[node, 3:], 0.0)
@@ -199,7 +224,7 @@ def warm_up() -> None:
         loops.closest_positions(index._triangles, rows, places, np.empty_like(places))
 
 
-def _order(centres: Matrix, levels: int) -> Rows:
+def _order(centres: Matrix, levels: int, checkpoint: Checkpoint) -> Rows:
     """Return rows of triangles such that each half, quarter, ... of them lies close together."""
     leaves = 2**levels
     count = leaves * -(-len(centres) // leaves)
@@ -208,6 +233,7 @@ def _order(centres: Matrix, levels: int) -> Rows:
     # Axis by axis: numpy is several times faster along memory than across threes.
     axes = np.ascontiguousarray(centres.T)
     for level in range(levels):
+        checkpoint(level / levels)
         parts = order.reshape(2**level, -1)
         extents = [np.ptp(axis[parts], axis=1) for axis in axes]
         longest = np.argmax(extents, axis=0)
@@ -334,7 +360,12 @@ class SurfaceComparison:
 
 
 def compare_surfaces(
-    a: Mesh, b: Mesh, *, index_a: SurfaceIndex | None = None, index_b: SurfaceIndex | None = None
+    a: Mesh,
+    b: Mesh,
+    *,
+    index_a: SurfaceIndex | None = None,
+    index_b: SurfaceIndex | None = None,
+    checkpoint: Checkpoint = go_on,
 ) -> SurfaceComparison:
     """Return how far two surfaces lie apart.
 
@@ -344,6 +375,8 @@ def compare_surfaces(
         In the same frame and unit, such as the warped source and the destination.
     index_a, index_b
         Their indexes, where they are built already.
+    checkpoint
+        Passed every few thousand vertices: what it raises ends the work.
 
     Returns
     -------
@@ -358,8 +391,11 @@ def compare_surfaces(
     >>> compared.forward.tolist(), round(compared.hausdorff, 6)
     ([1.0, 1.0, 1.0], 2.236068)
     """
-    forward = (index_b or SurfaceIndex(b)).distances(a.vertices)
-    backward = (index_a or SurfaceIndex(a)).distances(b.vertices)
+    middle = len(a.vertices) / (len(a.vertices) + len(b.vertices))
+    index_b = index_b or SurfaceIndex(b)
+    forward = index_b.distances(a.vertices, within(checkpoint, 0.0, middle))
+    index_a = index_a or SurfaceIndex(a)
+    backward = index_a.distances(b.vertices, within(checkpoint, middle, 1.0))
     return SurfaceComparison(
         forward,
         backward,

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from pinwarp.core.errors import PinwarpError
+from pinwarp.core.errors import Cancelled, PinwarpError
 from pinwarp.core.words import counted
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.tasks.dialogs import Dialogs, Existing
 from pinwarp.gui.tasks.file_tasks import FileTasks, Progress
-from pinwarp.gui.tasks.jobs import Cancelled
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES
 from pinwarp.io.meshes import MESH_SUFFIXES
 from pinwarp.session.editor import Editor

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pinwarp.core.errors import PinwarpError
+from pinwarp.core.errors import Cancelled, PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.core.live import check_drawable
 from pinwarp.core.mesh import Mesh
@@ -14,7 +14,6 @@ from pinwarp.core.names import look_alike_notes
 from pinwarp.gui.drawn.surface import Surface
 from pinwarp.gui.files.file_dialogs import FileDialogs
 from pinwarp.gui.tasks.file_tasks import FileTasks, Progress
-from pinwarp.gui.tasks.jobs import Cancelled
 from pinwarp.io.mesh_reference import MeshReference
 from pinwarp.io.mesh_search import FoundMesh, find_mesh
 from pinwarp.io.meshes import MeshFile

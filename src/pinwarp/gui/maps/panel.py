@@ -25,6 +25,7 @@ from qtpy.QtWidgets import (
 from pinwarp.core.maps import MapKind, Range, SurfaceMap, must_be_relative
 from pinwarp.gui.maps.histogram import HistogramView
 from pinwarp.gui.maps.words import TITLES, figure, meaning_of, note_of
+from pinwarp.gui.maps.work import MapWork
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.colour_scale import ColourScale
 from pinwarp.session.judging.survey import Survey
@@ -63,6 +64,7 @@ class MapPanel(QWidget):
             self.choice.addItem("No map" if kind is None else TITLES[kind], kind)
         self.choice.setToolTip(f"What the warped source is coloured by ({next_key} shows the next)")
         self.meaning = _words()
+        self.work = MapWork()
         self.note = _words()
         self.histogram = HistogramView()
         self.series = _words()
@@ -108,6 +110,7 @@ class MapPanel(QWidget):
         column.setSpacing(theme.SPACE)
         for widget in (
             self.choice,
+            self.work,
             self.meaning,
             self.note,
             self.histogram,

@@ -1,33 +1,27 @@
-"""Surveys each warp at rest off the UI thread; shows its map, its folds and where it guesses."""
+"""Has each warp at rest surveyed; shows its map, its folds and where it guesses."""
 
 from __future__ import annotations
 
 import math
-import weakref
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-import numpy as np
-from numpy.typing import NDArray
 from qtpy.QtCore import QObject
-from scipy.spatial import KDTree
 
 from pinwarp.core.landmarks import Side
 from pinwarp.core.maps import MapKind, Range, Suggestion
-from pinwarp.core.mesh import Mesh
 from pinwarp.gui.capability.action import Action, one_of
 from pinwarp.gui.capability.capability import Capability, Panel
+from pinwarp.gui.maps.making import MapMaker, Surveyed, SurveyRequest, is_of
 from pinwarp.gui.maps.panel import MapPanel
-from pinwarp.gui.maps.words import MENU_WORDS, note_of, title_of
+from pinwarp.gui.maps.words import MENU_WORDS, TITLES, note_of, title_of
 from pinwarp.gui.placing.ghosts import Ghosts
 from pinwarp.gui.placing.hand import Hand
 from pinwarp.gui.scene.drawables import (
+    Badge,
     Colouring,
     Drawable,
-    FoldedSurface,
     Legend,
-    MapLevels,
     Star,
 )
 from pinwarp.gui.style.colour_scale import ColourScale
@@ -36,7 +30,7 @@ from pinwarp.gui.views.scenes import Scenes
 from pinwarp.gui.views.viewport import Viewport
 from pinwarp.gui.warp.warps import Warps
 from pinwarp.session.editor import Editor
-from pinwarp.session.judging.survey import Survey, Surveyor
+from pinwarp.session.judging.survey import Survey
 from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.session import Session
 from pinwarp.session.signals import isolated
@@ -46,24 +40,6 @@ from pinwarp.session.warp.result import WarpResult
 MAP_ACTIONS = {kind: f"map_{kind.name.lower() if kind else 'none'}" for kind in (None, *MapKind)}
 # Nearer to a suggested place than this share of the bone, a landmark counts as placed there.
 THERE = 1e-3
-
-
-@dataclass(frozen=True)
-class _Request:
-    result: WarpResult
-    destination: Mesh | None
-    kind: MapKind | None
-    relative: bool
-
-
-@dataclass(frozen=True, eq=False)
-class _Surveyed:
-    """A survey made ready for the screen in the worker."""
-
-    request: _Request
-    survey: Survey
-    levels: MapLevels | None
-    folded: FoldedSurface | None
 
 
 class MapPresenter(Capability):
@@ -107,14 +83,13 @@ class MapPresenter(Capability):
         self._hand = hand
         self._ghosts = ghosts
         self._scenes = scenes
-        self._surveyor = Surveyor()
-        self._nearest: weakref.WeakKeyDictionary[Mesh, NDArray] = weakref.WeakKeyDictionary()
-        self._surveys = LatestWins(self._survey)
+        maker = MapMaker()
+        self._surveys = LatestWins(lambda asked: maker.make(asked, self._surveys.checkpoint))
         self._surveys.computed.connect(self._on_survey)
         self._surveys.failed.connect(self._on_failure)
         self._resting: WarpResult | None = None
-        self._surveyed: _Surveyed | None = None
-        self._asked: _Request | None = None
+        self._surveyed: Surveyed | None = None
+        self._asked: SurveyRequest | None = None
         self._kept_ranges: dict[MapKind, Range] | None = None
         suggest = Action(
             "place_suggested",
@@ -140,6 +115,7 @@ class MapPresenter(Capability):
         )
         self.panel = MapPanel(suggest, following.keys, hand.accept_action.keys)
         self.panels = (Panel("map", "Map", self.panel),)
+        self._window = parent
         self._connect(view)
         self._on_view()
 
@@ -149,12 +125,19 @@ class MapPresenter(Capability):
         panel.map_requested.connect(self.show_map)
         panel.range_requested.connect(self._fix_range)
         panel.relative_requested.connect(lambda on: editor.look(map_relative=on))
+        panel.work.stop_requested.connect(self._stop)
+        panel.work.changed.connect(self._scenes.renew)
+        self._surveys.progressed.connect(panel.work.show_share)
+        self._surveys.stopped.connect(self._show_work)
+        self._window.installEventFilter(panel.work)
         self._warps.result_changed.connect(self._on_result)
         editor.view_changed.connect(self._on_view)
         editor.session_changed.connect(self._on_session)
 
     def shut_down(self) -> None:
         """Stop the worker and let go of warps and editor."""
+        self._window.removeEventFilter(self.panel.work)
+        self.panel.work.show_work("")
         self._warps.result_changed.disconnect(self._on_result)
         self._editor.view_changed.disconnect(self._on_view)
         self._editor.session_changed.disconnect(self._on_session)
@@ -193,6 +176,11 @@ class MapPresenter(Capability):
         """Colour the warped source by something, or by nothing."""
         # What is hidden cannot be seen to be coloured.
         self._editor.look(map=kind, overlay=kind is not None or self._editor.view.overlay)
+
+    def _stop(self) -> None:
+        """Show no map instead of one that takes too long."""
+        self.show_map(None)
+        self.refused.emit("Stopped: no map is shown.")
 
     def _next_map(self) -> None:
         kinds = [None, *MapKind]
@@ -260,6 +248,11 @@ class MapPresenter(Capability):
         refined_later = result.factor is not None and not result.factor.has_modes
         self._resting = result if at_rest and not refined_later else None
         if self._resting is None:
+            if not self._surveys.is_idle:
+                # What moves has the processors to itself.
+                self._asked = None
+                self._surveys.stop()
+                self._show_work()
             self._scenes.renew()
         else:
             self._show_or_ask()
@@ -271,11 +264,13 @@ class MapPresenter(Capability):
         if not self._editor.is_previewing:
             self._show_or_ask()
 
-    def _request(self) -> _Request | None:
+    def _request(self) -> SurveyRequest | None:
         if self._resting is None:
             return None
         view, session = self._editor.view, self._editor.session
-        return _Request(self._resting, session.mesh(Side.DESTINATION), view.map, view.map_relative)
+        return SurveyRequest(
+            self._resting, session.mesh(Side.DESTINATION), view.map, view.map_relative
+        )
 
     def _show_or_ask(self) -> None:
         """Show what was found last, and ask for what is wanted now if that is something else."""
@@ -285,25 +280,16 @@ class MapPresenter(Capability):
             return
         self._asked = request
         self._surveys.request(request)
+        self._show_work()
 
-    def _survey(self, request: _Request) -> _Surveyed:
-        """Survey a warp and make ready what is drawn of it; runs in the worker."""
-        result = request.result
-        survey = self._surveyor.survey(
-            result, request.destination, request.kind, relative=request.relative
-        )
-        levels = survey.map.levels if survey.map is not None else None
-        coarse = None
-        stand_in, mesh = result.inputs.stand_in, result.inputs.mesh
-        if levels is not None and stand_in is not None and mesh is not None:
-            if stand_in not in self._nearest:
-                _, rows = KDTree(mesh.vertices).query(stand_in.vertices)
-                self._nearest[stand_in] = np.asarray(rows)
-            coarse = levels[self._nearest[stand_in]]
-        colours = MapLevels(levels, coarse) if levels is not None else None
-        return _Surveyed(request, survey, colours, _folded_surface(survey))
+    def _show_work(self) -> None:
+        """Say which map is being made."""
+        asked = None if self._surveys.is_idle else self._asked
+        kind = asked.kind if asked is not None else None
+        self.panel.work.show_work("" if kind is None else TITLES[kind])
 
-    def _on_survey(self, surveyed: _Surveyed) -> None:
+    def _on_survey(self, surveyed: Surveyed) -> None:
+        self._show_work()
         current = self._request()
         if current is None or surveyed.request != current:
             return
@@ -319,6 +305,7 @@ class MapPresenter(Capability):
             self.folds_changed.emit(surveyed.survey.findings)
 
     def _on_failure(self, error: Exception) -> None:
+        self._show_work()
         raise error
 
     # From the survey to the screen
@@ -357,9 +344,11 @@ class MapPresenter(Capability):
             if suggestion is not None:
                 yield Star(suggestion, unit_on(self._editor.session, side))
             return
+        if self.panel.work.words:
+            yield Badge(self.panel.work.words)
         surveyed, scale = self._surveyed, self._scale()
         # While things move the overlay has moved on from under its colours.
-        if surveyed is not None and _is_of(surveyed.request.result, self._resting):
+        if surveyed is not None and is_of(surveyed.request.result, self._resting):
             if surveyed.levels is not None and scale is not None:
                 yield Colouring(surveyed.levels, scale.kind, scale.range)
             if surveyed.folded is not None and surveyed.request.result is self._resting:
@@ -382,20 +371,3 @@ class MapPresenter(Capability):
             clipped=(found.lowest < low - 1e-6 * (high - low), found.highest > high * (1 + 1e-6)),
             fixed=view.map_range is not None,
         )
-
-
-def _is_of(surveyed: WarpResult, shown: WarpResult | None) -> bool:
-    """Whether a warp is the one shown, or differs in its refinement only.
-
-    From level to level the last colours stay until the next are there: else they would flicker.
-    """
-    if shown is None or surveyed is shown:
-        return surveyed is shown
-    return replace(surveyed.inputs, refinement=None) == replace(shown.inputs, refinement=None)
-
-
-def _folded_surface(survey: Survey) -> FoldedSurface | None:
-    result, folds = survey.result, survey.folds
-    if folds is None or not folds.count or result.inputs.mesh is None or result.vertices is None:
-        return None
-    return FoldedSurface.of(folds, result.inputs.mesh.faces, result.vertices)

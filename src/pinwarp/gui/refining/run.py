@@ -8,10 +8,11 @@ from typing import Any
 
 from qtpy.QtCore import QObject, Signal
 
+from pinwarp.core.errors import Cancelled
 from pinwarp.core.refinement import Level, Refinement
 from pinwarp.gui.refining import words
 from pinwarp.gui.refining.relay import LevelRelay
-from pinwarp.gui.tasks.jobs import Cancelled, SlowJob
+from pinwarp.gui.tasks.jobs import SlowJob
 from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor

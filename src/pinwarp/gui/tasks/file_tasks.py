@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from pinwarp.core.errors import PinwarpError, words_of
+from pinwarp.core.errors import Cancelled, PinwarpError, words_of
 from pinwarp.gui.tasks.dialogs import Dialogs
-from pinwarp.gui.tasks.jobs import Cancelled, SlowJob
+from pinwarp.gui.tasks.jobs import SlowJob
 from pinwarp.gui.tasks.stepped_job import SteppedJob, Steps
 from pinwarp.io.file_names import MODEL_SUFFIX, SESSION_SUFFIX, STUDY_SUFFIX
 from pinwarp.io.landmark_files import LANDMARK_SUFFIXES

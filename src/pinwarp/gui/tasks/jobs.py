@@ -10,11 +10,7 @@ from typing import Any
 
 from qtpy.QtCore import QObject, Signal
 
-from pinwarp.core.errors import PinwarpError
-
-
-class Cancelled(PinwarpError):
-    """The user cancelled a job."""
+from pinwarp.core.errors import Cancelled
 
 
 class _Outcome(QObject):
@@ -63,11 +59,14 @@ class LatestWins(QObject):
     Parameters
     ----------
     function
-        Called with a request in the worker thread; its result arrives by ``computed``.
+        Called with a request in the worker thread; its result arrives by ``computed``. Where it
+        passes :meth:`checkpoint` it ends as soon as its result is no longer wanted.
     """
 
     computed = Signal(object)
     failed = Signal(object)
+    progressed = Signal(float)
+    stopped = Signal()
 
     def __init__(self, function: Callable[[Any], Any], parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -75,7 +74,10 @@ class LatestWins(QObject):
         self._outcome = _Outcome()
         self._worker = _Worker(self._outcome)
         self._outcome.finished.connect(self._on_finished)
+        self._outcome.progressed.connect(self._on_progressed)
         self._waiting: list[Any] = []
+        self._unwanted = threading.Event()
+        self._told = 0.0
         self._busy = self._is_shut_down = False
 
     @property
@@ -87,8 +89,23 @@ class LatestWins(QObject):
         """Ask for a result; a request still waiting is dropped for this one."""
         if self._busy:
             self._waiting = [request]
+            self._unwanted.set()
         else:
             self._start(request)
+
+    def stop(self) -> None:
+        """Want nothing any more: ``stopped`` emits once what runs has passed a checkpoint."""
+        self._waiting.clear()
+        self._unwanted.set()
+
+    def checkpoint(self, share: float) -> None:
+        """Tell which share is done; Cancelled where the result is unwanted. For the worker."""
+        if self._unwanted.is_set():
+            raise Cancelled("Cancelled.")
+        # Not more often than can be seen.
+        if abs(share - self._told) >= 0.01:
+            self._told = share
+            self._outcome.progressed.emit(share, "")
 
     def request_if_idle(self, request: Any) -> None:
         """Ask for something that can wait: dropped where anything else is under way."""
@@ -97,7 +114,12 @@ class LatestWins(QObject):
 
     def _start(self, request: Any) -> None:
         self._busy = True
+        self._unwanted.clear()
+        self._told = 0.0
         self._worker.start(0, lambda: self._function(request))
+
+    def _on_progressed(self, share: float, _stage: str) -> None:
+        self.progressed.emit(share)
 
     def _on_finished(self, _number: int, result: Any, error: Exception | None) -> None:
         self._busy = False
@@ -106,15 +128,19 @@ class LatestWins(QObject):
             return
         if self._waiting:
             self._start(self._waiting.pop())
-        if error is not None:
+        if isinstance(error, Cancelled):
+            if not self._busy:
+                self.stopped.emit()
+        elif error is not None:
             self.failed.emit(error)
         else:
             self.computed.emit(result)
 
     def shut_down(self) -> None:
-        """Forget what waits and let the running computation end."""
+        """Forget what waits and let the running computation end, at its next checkpoint."""
         self._is_shut_down = True
-        self._waiting.clear()
+        self.stop()
+        self._outcome.progressed.disconnect(self._on_progressed)
         self._outcome.finished.disconnect(self._on_finished)
         self._worker.shut_down()
 

@@ -8,8 +8,7 @@ from typing import Any
 
 from qtpy.QtCore import QObject, QTimer, Signal
 
-from pinwarp.core.errors import PinwarpError
-from pinwarp.gui.tasks.jobs import Cancelled
+from pinwarp.core.errors import Cancelled, PinwarpError
 
 Steps = Generator[tuple[float, str], None, Any]
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pinwarp.core.checkpoint import Checkpoint, go_on, within
 from pinwarp.core.errors import RangeError
 from pinwarp.core.findings import Finding
 from pinwarp.core.folds import Folds, folds_of
@@ -27,6 +28,8 @@ from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.session.judging.quality import LEAST_PAIRS
 from pinwarp.session.warp.result import WarpResult
 
+# Shares of a survey's time: the look for folds, and of a distance map the two indexes.
+LOOK, INDEX = 0.1, 0.3
 FEW_PAIRS = (
     "The uncertainty needs five pairs that do not lie in one plane, since it is told from how "
     "well the pairs foretell one another: place another pair."
@@ -102,6 +105,7 @@ class Surveyor:
         kind: MapKind | None,
         *,
         relative: bool = False,
+        checkpoint: Checkpoint = go_on,
     ) -> Survey:
         """Look at a warp.
 
@@ -116,6 +120,8 @@ class Surveyor:
         relative
             Whether the overall difference in size is taken out of ratios. It always is where
             it is more than twofold.
+        checkpoint
+            Passed often: what it raises ends the survey, and the next one begins anew.
 
         Examples
         --------
@@ -131,7 +137,7 @@ class Surveyor:
         if mesh is None or shown is None:
             return Survey(result, kind, missing=missing)
         try:
-            self._look_at(result, mesh, shown)
+            self._look_at(result, mesh, shown, within(checkpoint, 0.0, LOOK))
         except RangeError as error:
             return Survey(result, kind, missing="" if kind is None else str(error))
         taken_out = self._size if relative or must_be_relative(self._size) else 1.0
@@ -141,7 +147,7 @@ class Surveyor:
         if kind is not None and not missing:
             try:
                 if kind not in self._maps:
-                    self._make(kind, result, mesh, shown)
+                    self._make(kind, result, mesh, shown, within(checkpoint, LOOK, 1.0))
                 if kind not in self._maps:
                     missing = FEW_PAIRS
             except RangeError as error:
@@ -158,18 +164,28 @@ class Surveyor:
             self._destination, self._index = destination, None
             self._maps.pop(MapKind.DISTANCE, None)
 
-    def _look_at(self, result: WarpResult, mesh: Mesh, shown: Spline) -> None:
+    def _look_at(
+        self, result: WarpResult, mesh: Mesh, shown: Spline, checkpoint: Checkpoint
+    ) -> None:
         """Do what every survey of a warp needs, unless it was done for the last one."""
         if result is self._result:
             return
         self._result, self._maps = None, {}
-        self._determinant = determinants(jacobians(shown, mesh.vertices))
+        self._determinant = determinants(jacobians(shown, mesh.vertices, checkpoint))
+        checkpoint(1.0)
         self._folds = folds_of(self._determinant, mesh, shown, len(result.inputs.source))
         assert result.factor is not None, "what is shown was solved from it"
         self._size = overall_size(shown, result.factor)
         self._result = result
 
-    def _make(self, kind: MapKind, result: WarpResult, mesh: Mesh, shown: Spline) -> None:
+    def _make(
+        self,
+        kind: MapKind,
+        result: WarpResult,
+        mesh: Mesh,
+        shown: Spline,
+        checkpoint: Checkpoint,
+    ) -> None:
         factor, inputs = result.factor, result.inputs
         assert factor is not None, "what is shown was solved from it"
         made: tuple[SurfaceMap, ...] = ()
@@ -178,26 +194,31 @@ class Surveyor:
                 assert result.vertices is not None, "a warp at rest has its vertices"
                 assert self._destination is not None, "else the map would be missing"
                 warped = mesh.with_vertices(result.vertices)
-                self._index_warped = SurfaceIndex(warped, like=self._index_warped)
-                index = self._index_of(self._destination)
-                made = (distance_map(warped, self._destination, self._index_warped, index),)
+                indexed, both = (within(checkpoint, 0.0, INDEX / 2), within(checkpoint, INDEX, 1.0))
+                self._index_warped = SurfaceIndex(warped, self._index_warped, indexed)
+                index = self._index_of(self._destination, within(checkpoint, INDEX / 2, INDEX))
+                made = (distance_map(warped, self._destination, self._index_warped, index, both),)
             case MapKind.VOLUME:
                 sign = -1 if self._folds is not None and self._folds.mirrors else 1
                 made = (volume_map(sign * self._determinant, mesh, self._taken_out),)
             case MapKind.LARGEST_STRETCH | MapKind.SMALLEST_STRETCH:
-                jacobian = jacobians(shown, mesh.vertices)
+                jacobian = jacobians(shown, mesh.vertices, checkpoint)
                 made = stretch_maps(jacobian, mesh, self._taken_out)
             case MapKind.UNCERTAINTY:
                 prediction = prediction_of(
                     factor, np.array(inputs.destination), inputs.settings.penalty
                 )
-                made = (uncertainty_map(prediction, mesh),) if prediction is not None else ()
+                made = (
+                    (uncertainty_map(prediction, mesh, checkpoint),)
+                    if prediction is not None
+                    else ()
+                )
         self.maps += len(made)
         self._maps.update({part.kind: part for part in made})
 
-    def _index_of(self, mesh: Mesh) -> SurfaceIndex:
+    def _index_of(self, mesh: Mesh, checkpoint: Checkpoint) -> SurfaceIndex:
         if self._index is None or self._index.mesh is not mesh:
-            self._index = SurfaceIndex(mesh)
+            self._index = SurfaceIndex(mesh, checkpoint=checkpoint)
             self.indexes += 1
         return self._index
 
