@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pinwarp.gui.style.lengths import format_number, ticks
+from pinwarp.core.lengths import format_number
+from pinwarp.gui.style.lengths import ticks
 
 
 @given(st.floats(1e-6, 1e6))

@@ -13,10 +13,12 @@ from rich.table import Table
 
 from pinwarp.cli.options import SessionFile
 from pinwarp.core.findings import Severity
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.words import counted
 from pinwarp.io.setting_keys import plain_settings
 from pinwarp.session.judging import check as checking
 from pinwarp.session.keeping.files import read_session
+from pinwarp.session.rulers import rulers_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.provenance import session_hash
 from pinwarp.session.warp.setting_words import settings_in_words
@@ -67,25 +69,26 @@ def _about(session: Session) -> dict[str, Any]:
 
 
 def _print(console: Console, name: str, session: Session, checked: checking.Check) -> None:
-    unit = session.unit
-    pairs = Table("Pair", title=f"{name}: {counted(len(checked.pairs), 'pair')}, lengths in {unit}")
+    ruler = rulers_of(session).session
+    count = counted(len(checked.pairs), "pair")
+    pairs = Table("Pair", title=f"{name}: {count}, lengths in {ruler.unit}")
     for column in ("Residual", "Left out", "Standardised"):
         pairs.add_column(column, justify="right")
     named = {name for x in checked.findings if x.severity is Severity.WRONG for name in x.names}
     lengths = [x for pair in checked.pairs for x in (pair.residual, pair.leave_one_out)]
-    decimals = _decimals(max((x for x in lengths if not math.isnan(x)), default=0.0))
+    decimals = _decimals(max((ruler.shown(x) for x in lengths if not math.isnan(x)), default=0.0))
     for pair in checked.pairs:
         pairs.add_row(
             # Names are the user's: brackets in them are no markup.
             escape(pair.name),
-            _number(pair.residual, decimals),
-            _number(pair.leave_one_out, decimals),
+            _number(ruler.shown(pair.residual), decimals),
+            _number(ruler.shown(pair.leave_one_out), decimals),
             _number(pair.standardised, 2),
             style="bold" if pair.name in named else None,
         )
     console.print(pairs)
     if checked.groups:
-        console.print(_of_groups(checked, decimals))
+        console.print(_of_groups(checked, decimals, ruler))
     for label, words in _figures(session, checked):
         console.print(f"{label:<22}{words}", markup=False, highlight=False)
     for found in checked.findings:
@@ -95,32 +98,34 @@ def _print(console: Console, name: str, session: Session, checked: checking.Chec
         console.print(f"- {note}", markup=False, highlight=False)
 
 
-def _of_groups(checked: checking.Check, decimals: int) -> Table:
+def _of_groups(checked: checking.Check, decimals: int, ruler: Ruler) -> Table:
     groups = Table("Curve or patch")
     for column in ("Kind", "Points", "Excluded", "Freed", "Largest slide"):
         groups.add_column(column, justify="left" if column == "Kind" else "right")
     for group in checked.groups:
         kind = f"{group.kind}, drawn" if group.drawn else group.kind
         counts = (str(group.points), str(group.excluded), str(group.freed))
-        groups.add_row(escape(group.name), kind, *counts, _number(group.largest_slide, decimals))
+        groups.add_row(
+            escape(group.name), kind, *counts, _number(ruler.shown(group.largest_slide), decimals)
+        )
     return groups
 
 
 def _figures(session: Session, checked: checking.Check) -> list[tuple[str, str]]:
-    unit = session.unit
+    ruler = rulers_of(session).session
     figures = [
         ("Session", session_hash(session)),
-        *settings_in_words(session.settings, unit),
-        ("Suggested penalty", _length(checked.suggested_penalty, unit, "none")),
-        *_flatness(checked, unit),
+        *settings_in_words(session.settings, session.unit),
+        ("Suggested penalty", _length(checked.suggested_penalty, ruler, "none")),
+        *_flatness(checked, ruler),
         (
             "Flexibility",
             "not defined" if checked.flexibility is None else f"{checked.flexibility:.1%}",
         ),
-        ("RMS residual", _length(checked.rms_residual, unit)),
+        ("RMS residual", _length(checked.rms_residual, ruler)),
         (
             "RMS left out",
-            _length(checked.rms_leave_one_out, unit),
+            _length(checked.rms_leave_one_out, ruler),
         ),
     ]
     if checked.folded_vertices is not None:
@@ -129,7 +134,8 @@ def _figures(session: Session, checked: checking.Check) -> list[tuple[str, str]]
         figures.append(
             (
                 "To the destination" if checked.fitted is None else "To it (fitted)",
-                f"mean {far.mean:.4g}, 95% {far.percentile_95:.4g}, max {far.maximum:.4g} {unit}",
+                f"mean {ruler.number(far.mean)}, 95% {ruler.number(far.percentile_95)}, "
+                f"max {ruler.text(far.maximum)}",
             )
         )
     if checked.fitted is not None:
@@ -138,12 +144,12 @@ def _figures(session: Session, checked: checking.Check) -> list[tuple[str, str]]
     return figures
 
 
-def _flatness(checked: checking.Check, unit: str) -> list[tuple[str, str]]:
+def _flatness(checked: checking.Check, ruler: Ruler) -> list[tuple[str, str]]:
     """Say which penalties do as well as the suggested one."""
     if checked.as_good is None:
         return []
     low, high = checked.as_good
-    return [("As good", f"{low:.2g} to {high:.2g} {unit}")]
+    return [("As good", f"{ruler.number(low, 2)} to {ruler.text(high, 2)}")]
 
 
 def _number(value: float, decimals: int) -> str:
@@ -155,5 +161,5 @@ def _decimals(largest: float) -> int:
     return max(0, 3 - math.floor(math.log10(largest))) if largest > 0 else 0
 
 
-def _length(value: float | None, unit: str, otherwise: str = "not known") -> str:
-    return otherwise if value is None else f"{value:.4g} {unit}"
+def _length(value: float | None, ruler: Ruler, otherwise: str = "not known") -> str:
+    return otherwise if value is None else ruler.text(value)

@@ -16,10 +16,12 @@ from rich.table import Table
 from pinwarp.cli.options import Force, SessionFile
 from pinwarp.cli.telling import refuse_existing, stage_bar, tell_notes
 from pinwarp.core.errors import words_of
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.words import counted
 from pinwarp.io.backup import write_keeping_previous
 from pinwarp.session.judging.check import Check, check
 from pinwarp.session.keeping.files import read_session, write_session
+from pinwarp.session.rulers import rulers_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.refining import (
     RefinementOptions,
@@ -119,7 +121,8 @@ def refine(
     assert record is not None, "it was refined"
     console.print(
         f"{found.fitted:,} of {found.places:,} places fitted, features larger than "
-        f"{record.smallest_feature:.4g} {refined.unit}. A small distance then proves nothing.",
+        f"{rulers_of(refined).session.text(record.smallest_feature)}. "
+        "A small distance then proves nothing.",
         markup=False,
         highlight=False,
     )
@@ -135,8 +138,9 @@ def _table(session: Session, before: Check, after: Check) -> Table:
     table = Table("", title=f"Lengths in {session.unit}")
     for column in ("Landmarks", "Refined (fitted)"):
         table.add_column(column, justify="right")
+    ruler = rulers_of(session).session
     for label, one, two in _figures(before, after):
-        table.add_row(label, _number(one), _number(two))
+        table.add_row(label, _number(one, ruler), _number(two, ruler))
     return table
 
 
@@ -156,17 +160,18 @@ def _worth(session: Session, worth: Verification) -> Table:
     table = Table("Pair", title=f"Left out, in {session.unit}")
     for column in ("Landmarks", "Refined"):
         table.add_column(column, justify="right")
+    ruler = rulers_of(session).session
     for name, one, two in zip(worth.names, worth.before, worth.after, strict=True):
         # Names are the user's: brackets in them are no markup.
-        table.add_row(escape(name), _number(one), _number(two))
+        table.add_row(escape(name), _number(one, ruler), _number(two, ruler))
     table.add_section()
     for label, figures in (("RMS", worth.rms()), ("Median", worth.median())):
-        table.add_row(label, *(_number(x) for x in figures), style="bold")
+        table.add_row(label, *(_number(x, ruler) for x in figures), style="bold")
     return table
 
 
-def _number(value: float | None) -> str:
-    return "" if value is None or math.isnan(value) else f"{value:.4g}"
+def _number(value: float | None, ruler: Ruler) -> str:
+    return "" if value is None or math.isnan(value) else ruler.number(value)
 
 
 def _as_json(

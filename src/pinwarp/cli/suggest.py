@@ -13,6 +13,7 @@ from pinwarp.cli.options import Force, SessionFile
 from pinwarp.cli.telling import refuse_existing, stage_bar, tell_error, tell_notes
 from pinwarp.core.errors import words_of
 from pinwarp.core.first_guess import FirstGuess, Verdict
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.pose import Mirror, PoseSettings
 from pinwarp.core.words import counted, some_of
 from pinwarp.io.backup import write_keeping_previous
@@ -135,7 +136,7 @@ def _lines(
         ("Another way round", _worse(guess.other_pose)),
     ]
     if ghosts:
-        lines.insert(1, ("Doubt of each", f"{ghosts[0].radius:.3g} {unit}"))
+        lines.insert(1, ("Doubt of each", Ruler(unit).text(ghosts[0].radius, 3)))
     return lines
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from enum import IntEnum, StrEnum
 from typing import Protocol, TypeVar
 
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.words import counted, listed
 
 
@@ -114,7 +115,7 @@ class Finding:
         """Whether something is or may be wrong."""
         return self.severity > Severity.REMARK
 
-    def describe(self, names: Sequence[str] | None = None, unit: str = "") -> str:
+    def describe(self, names: Sequence[str] | None = None, unit: Ruler | str = "") -> str:
         """Say it in a sentence.
 
         Parameters
@@ -122,7 +123,7 @@ class Finding:
         names
             The landmarks' names by row; without them the rows are counted from 0.
         unit
-            The unit put behind lengths.
+            How lengths are told, or only the unit put behind them.
 
         Examples
         --------
@@ -131,11 +132,9 @@ class Finding:
         """
         told = [names[row] if names else f"landmark {row}" for row in self.rows]
         who = _who(told)
-        length = f"{self.value:.4g} {unit}".rstrip()
-        other, usual = (
-            *(f"{figure:.3g} {unit}".rstrip() for figure in self.others),
-            *("", ""),
-        )[:2]
+        ruler = Ruler.of(unit)
+        length = ruler.text(self.value)
+        other, usual = (*(ruler.text(figure, 3) for figure in self.others), "", "")[:2]
         match self.kind:
             case FindingKind.CONFLICT:
                 apart = length if len(self.rows) == 2 else f"up to {length}"
@@ -167,7 +166,7 @@ class Finding:
                 near = f" near {who}" if who else ""
                 return f"{fold}{near}: the warp turns the surface inside out there."
             case FindingKind.ISOLATED:
-                free = f"{_round_down(self.value)} {unit}".rstrip()
+                free = f"{_round_down(ruler.shown(self.value))} {ruler.unit}".rstrip()
                 return (
                     f"{who} is isolated: no landmark within {free}. "
                     f"That the other pairs miss it by {other} says little about it."

@@ -6,18 +6,26 @@ import re
 
 from pinwarp.core.errors import LandmarkError
 from pinwarp.core.landmarks import Landmark, Position, Side, as_position
+from pinwarp.core.lengths import Ruler
 from pinwarp.io.csv_cells import as_sentence, number_of
 
+_AS_STORED = Ruler()
 
-def position_text(position: Position | None, unit: str) -> str:
+
+def position_text(position: Position | None, ruler: Ruler) -> str:
     """Return a position for people."""
     if position is None:
         return "not placed"
-    return "({:.5g}, {:.5g}, {:.5g})".format(*position) + f" {unit}".rstrip()
+    numbers = ", ".join(ruler.number(x, 5) for x in position)
+    return f"({numbers}) {ruler.unit}".rstrip()
 
 
-def typed_position(landmark: Landmark, side: Side, axis: int, text: str) -> Position:
+def typed_position(
+    landmark: Landmark, side: Side, axis: int, text: str, ruler: Ruler = _AS_STORED
+) -> Position:
     """Return where a landmark is after a number was typed for one axis, or three for all.
+
+    The numbers are in the unit that the ruler shows.
 
     Raises
     ------
@@ -31,10 +39,10 @@ def typed_position(landmark: Landmark, side: Side, axis: int, text: str) -> Posi
     >>> typed_position(Landmark("fovea"), Side.SOURCE, 0, "1 2 3")
     (1.0, 2.0, 3.0)
     """
-    cells = re.split(r"[;\s]+", text.strip(" \t;()[]"))
+    cells = re.split(r"[;\s]+", text.strip().removesuffix(ruler.unit).strip(" \t;()[]"))
     before = landmark.position(side)
     try:
-        numbers = [number_of(cell, ";") for cell in cells]
+        numbers = [ruler.stored(number_of(cell, ";")) for cell in cells]
     except ValueError as error:
         raise LandmarkError(f"{as_sentence(str(error))} Type one such as 12.5.") from None
     if len(numbers) == 3:

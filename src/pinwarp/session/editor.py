@@ -11,6 +11,7 @@ from pinwarp.core.errors import PinwarpError
 from pinwarp.core.frame_warp import BodyRules
 from pinwarp.core.landmarks import Side
 from pinwarp.session.history import NO_RULES, History
+from pinwarp.session.rulers import Rulers, rulers_of
 from pinwarp.session.session import Session
 from pinwarp.session.signals import isolated
 from pinwarp.session.view import Selection, ViewChanges, ViewState
@@ -41,6 +42,8 @@ class Editor:
 
     Signals are in the past tense: ``session_changed`` (also while previewing a drag),
     ``selection_changed``, ``view_changed`` and ``saved`` (the file or the unsaved mark changed).
+    ``rulers_changed`` comes before the change of session or view that lengths are shown otherwise
+    for.
 
     Examples
     --------
@@ -58,12 +61,14 @@ class Editor:
     selection_changed = isolated(Selection)
     view_changed = isolated(ViewState)
     saved = isolated()
+    rulers_changed = isolated(Rulers)
 
     def __init__(self, session: Session | None = None) -> None:
         self._history = History(session or Session())
         self._preview: Session | None = None
         self.selection = Selection()
         self.view = ViewState()
+        self.rulers = rulers_of(self.session, self.view.lengths)
         self.path: Path | None = None
         self.file_sha256: str | None = None
 
@@ -110,6 +115,7 @@ class Editor:
     def preview(self, session: Session) -> None:
         """Show a session while something is dragged, without a step in the history."""
         self._preview = session
+        self._measure()
         self.session_changed.emit(session)
 
     def cancel_preview(self) -> None:
@@ -208,9 +214,18 @@ class Editor:
         view = replace(self.view, **changes)
         if view != self.view:
             self.view = view
+            self._measure()
             self.view_changed.emit(view)
 
+    def _measure(self) -> None:
+        """Find out how lengths are shown, and say so where it is another way than before."""
+        rulers = rulers_of(self.session, self.view.lengths)
+        if rulers != self.rulers:
+            self.rulers = rulers
+            self.rulers_changed.emit(rulers)
+
     def _announce(self) -> None:
+        self._measure()
         there = {landmark.name for landmark in self.session.landmarks}
         kept = tuple(name for name in self.selection.names if name in there)
         self.select(*kept)

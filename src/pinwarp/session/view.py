@@ -58,6 +58,16 @@ class GridKind(StrEnum):
         return self.value[-1] if self.value.startswith("plane") else None
 
 
+class LengthUnit(StrEnum):
+    """In which unit lengths are shown."""
+
+    AUTOMATIC = "automatic"
+    FILE = "as in the file"
+    MM = "mm"
+    CM = "cm"
+    M = "m"
+
+
 @dataclass(frozen=True)
 class ViewState:
     """How the session is looked at and worked on: not undone, not part of what is saved.
@@ -101,6 +111,8 @@ class ViewState:
         What the warped source is coloured by, if anything, and its opacity then.
     map_relative
         Whether the overall difference in size is taken out of maps of ratios.
+    lengths
+        In which unit lengths are shown.
     map_ranges
         The legends that the user fixed, so that warps and sessions can be compared by colour.
     """
@@ -126,6 +138,7 @@ class ViewState:
     map: MapKind | None = None
     map_opacity: float = 1.0
     map_relative: bool = False
+    lengths: LengthUnit = LengthUnit.AUTOMATIC
     map_ranges: Mapping[MapKind, Range] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
@@ -158,4 +171,5 @@ class ViewChanges(TypedDict, total=False):
     map: MapKind | None
     map_opacity: float
     map_relative: bool
+    lengths: LengthUnit
     map_ranges: Mapping[MapKind, Range]

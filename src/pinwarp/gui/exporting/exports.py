@@ -10,7 +10,6 @@ from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.core.words import counted
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
-from pinwarp.gui.style.lengths import format_length
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, MESH_FILES, FileTasks, Progress
 from pinwarp.io.atomic import write_atomically
@@ -214,7 +213,7 @@ class Exports(Capability):
         count = counted(len(session.pairs), "pair")
         if points := semilandmarks_in_words(warp.result):
             count += f", {points}"
-        penalty = f"penalty {format_length(session.settings.penalty, session.unit, 6)}"
+        penalty = f"penalty {self._editor.rulers.session.text(session.settings.penalty, 6)}"
         what = warp_in_words(session)
         self._tasks.said.emit(f"Exported {path.name}: {what} ({count}, {penalty})")
         for note in not_sliding_note(warp.result):

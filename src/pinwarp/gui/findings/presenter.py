@@ -122,6 +122,7 @@ class FindingsPresenter(Capability):
         maps.survey_shown.connect(self.fold_note.show_survey)
         quality.quality_changed.connect(self._on_quality)
         maps.folds_changed.connect(self._on_folds)
+        editor.rulers_changed.connect(self._on_session)
         editor.session_changed.connect(self._on_session)
         editor.selection_changed.connect(self._on_selection)
         self._on_session()
@@ -132,6 +133,7 @@ class FindingsPresenter(Capability):
         self._source.quality_changed.disconnect(self._on_quality)
         self._maps.folds_changed.disconnect(self._on_folds)
         self._maps.survey_shown.disconnect(self.fold_note.show_survey)
+        self._editor.rulers_changed.disconnect(self._on_session)
         self._editor.session_changed.disconnect(self._on_session)
         self._editor.selection_changed.disconnect(self._on_selection)
 
@@ -179,16 +181,16 @@ class FindingsPresenter(Capability):
         judged = survey.result.inputs if survey is not None else None
         places = (judged.source, judged.destination) if judged is not None else None
         astray = self._astray
-        about = (session.settings.penalty, session.unit, session.source)
+        about = (session.settings.penalty, self._editor.rulers, session.source)
         key = (session.landmarks, about, quality, folds, places, astray)
         if key == self._shown_for:
             return
         self._shown_for = key
-        found = quality.findings_in(session) if quality is not None else ()
+        found = quality.findings_in(session, rulers.session) if quality is not None else ()
         if judged is not None:
-            found += named_findings(folds, judged, session)
+            found += named_findings(folds, judged, session, rulers.session)
         # Folds come behind what causes them, what is only isolated last.
-        found = gravest_first((*astray, *found, *about_suggested(session)))
+        found = gravest_first((*(x.by(rulers) for x in astray), *found, *about_suggested(session)))
         self._found = tuple(one for one in found if one.finding.kind not in _TOLD_ELSEWHERE)
         self._table.model.show_findings(
             # What is suggested has its sign as a state.

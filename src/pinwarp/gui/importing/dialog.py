@@ -23,10 +23,11 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.landmarks import Side
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.words import counted, listed
 from pinwarp.gui.importing.arrival_model import ArrivalModel
 from pinwarp.gui.style import theme
-from pinwarp.gui.style.lengths import distance_from_mesh, format_length
+from pinwarp.gui.style.lengths import distance_from_mesh
 from pinwarp.io.landmark_files import LandmarkReading
 from pinwarp.session.importing.asking import doubts_of
 from pinwarp.session.importing.fit import Fit
@@ -176,7 +177,7 @@ class ImportDialog(QDialog):
         frame, column = _marked()
         unit, mesh = unit_on(self._session, side), self._session.mesh(side)
         size = mesh.diagonal if mesh is not None else 0.0
-        far = format_length(fits[0].distance, unit, 3)
+        far = Ruler(unit).text(fits[0].distance, 3)
         column.addWidget(
             _label(
                 f"As stored they lie {far} from the {side.value} mesh in the median. "

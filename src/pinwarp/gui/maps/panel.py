@@ -22,6 +22,7 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.maps import MapKind, Range, SurfaceMap, must_be_relative
 from pinwarp.gui.maps.histogram import HistogramView
 from pinwarp.gui.maps.words import TITLES, figure, meaning_of, note_of
@@ -58,6 +59,7 @@ class MapPanel(QWidget):
         super().__init__()
         self._accept_key = accept_key
         self._shown_range: Range = (0.0, 1.0)
+        self._ruler = Ruler()
         self.choice = QComboBox()
         self.choice.setAccessibleName("Map")
         for kind in (None, *MapKind):
@@ -138,7 +140,7 @@ class MapPanel(QWidget):
         self,
         survey: Survey | None,
         view: ViewState,
-        unit: str,
+        ruler: Ruler,
         scale: ColourScale | None,
         taken: str | None = None,
     ) -> None:
@@ -150,8 +152,8 @@ class MapPanel(QWidget):
             What was found last.
         view
             Which map is asked for, and its fixed range.
-        unit
-            Of the meshes.
+        ruler
+            How lengths on the destination are shown.
         scale
             The colours that the map is drawn in; None where there is no map.
         taken
@@ -179,13 +181,13 @@ class MapPanel(QWidget):
             f"As a whole, lengths grow × {survey.size:.3g} (affine fit of the pairs)"
         )
         self.histogram.show_map(found, scale)
-        self.figures.setText(_table(found, unit))
+        self.figures.setText(_table(found, ruler))
         self.series.setText(
             f"Bars{' (fitted)' if fitted else ''}: source → destination, in the map's colours<br>"
             f'<span style="color:{theme.WARNING_COLOUR}">━</span> destination → source'
         )
         if suggestion is not None:
-            known = f"the warp is known to ± {figure(suggestion.deviation, unit)} there."
+            known = f"the warp is known to ± {figure(suggestion.deviation, ruler)} there."
             self.advice.setText(
                 f"The next landmark helps most where the star stands on the source: {known}"
                 if taken is None
@@ -193,20 +195,21 @@ class MapPanel(QWidget):
                 f"too: {self._accept_key} accepts its ghost."
             )
             self.place_next.setEnabled(taken is None)
-        self._show_range(found, view, unit, scale)
+        self._show_range(found, view, ruler, scale)
 
     def _show_range(
-        self, found: SurfaceMap, view: ViewState, unit: str, scale: ColourScale
+        self, found: SurfaceMap, view: ViewState, ruler: Ruler, scale: ColourScale
     ) -> None:
         is_fixed = view.map_range is not None
         (self.fixed if is_fixed else self.automatic).setChecked(True)
         self._shown_range = scale.range
+        self._ruler = Ruler() if found.kind.is_ratio else ruler
         for line, value in zip((self.low, self.high), scale.range, strict=True):
             line.setEnabled(is_fixed)
             if not (line.hasFocus() and line.isModified()):
-                line.setText(f"{value:.4g}")
+                line.setText(self._ruler.number(value))
                 line.setModified(False)
-        self.unit.setText("" if found.kind.is_ratio else unit)
+        self.unit.setText(self._ruler.unit)
 
     # What the user does
 
@@ -221,7 +224,7 @@ class MapPanel(QWidget):
     def _on_typed(self) -> None:
         if not (self.low.isModified() or self.high.isModified()):
             return
-        wanted = _range_of(self.low.text(), self.high.text())
+        wanted = _range_of(self.low.text(), self.high.text(), self._ruler)
         kind = self.choice.currentData()
         is_ratio = kind is not None and MapKind(kind).is_ratio
         for line in (self.low, self.high):
@@ -233,7 +236,7 @@ class MapPanel(QWidget):
             )
             self.note.show()
             for line, value in zip((self.low, self.high), self._shown_range, strict=True):
-                line.setText(f"{value:.4g}")
+                line.setText(self._ruler.number(value))
             return
         self.note.hide()
         self.range_requested.emit(wanted)
@@ -253,29 +256,29 @@ def _number(name: str) -> QLineEdit:
     return line
 
 
-def _range_of(low: str, high: str) -> Range | None:
+def _range_of(low: str, high: str, ruler: Ruler) -> Range | None:
     try:
-        wanted = (float(low.replace(",", ".")), float(high.replace(",", ".")))
+        wanted = (ruler.length(low), ruler.length(high))
     except ValueError:
         return None
     return wanted if all(map(math.isfinite, wanted)) and wanted[0] < wanted[1] else None
 
 
-def _table(found: SurfaceMap, unit: str) -> str:
+def _table(found: SurfaceMap, ruler: Ruler) -> str:
     """Return the figures as a small table."""
     compared = found.comparison
     if compared is None:
-        unit = "" if found.kind.is_ratio else unit
+        ruler = Ruler() if found.kind.is_ratio else ruler
         rows: list[tuple[str, ...]] = [
-            ("Lowest", figure(found.lowest, unit)),
-            ("Median", figure(found.median, unit)),
-            ("Highest", figure(found.highest, unit)),
+            ("Lowest", figure(found.lowest, ruler)),
+            ("Median", figure(found.median, ruler)),
+            ("Highest", figure(found.highest, ruler)),
         ]
-        note = note_of(found, unit) if found.kind.is_ratio else ""
+        note = note_of(found, ruler.unit) if found.kind.is_ratio else ""
         return _rows_as_html(("", ""), rows) + (f"<p>{note.capitalize()}.</p>" if note else "")
     both = (compared.forward_figures, compared.backward_figures)
-    rows = [(name, *(figure(getattr(way, key), unit) for way in both)) for name, key in _ROWS]
-    rows.append(("Hausdorff distance", figure(compared.hausdorff, unit), ""))
+    rows = [(name, *(figure(getattr(way, key), ruler) for way in both)) for name, key in _ROWS]
+    rows.append(("Hausdorff distance", figure(compared.hausdorff, ruler), ""))
     return _rows_as_html(("", "Source →<br>destination", "Destination →<br>source"), rows)
 
 

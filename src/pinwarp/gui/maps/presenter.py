@@ -9,6 +9,7 @@ from types import MappingProxyType
 from qtpy.QtCore import QObject
 
 from pinwarp.core.landmarks import Side
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.maps import MapKind, Range, Suggestion
 from pinwarp.gui.capability.action import Action, one_of
 from pinwarp.gui.capability.capability import Capability, Panel
@@ -31,7 +32,6 @@ from pinwarp.gui.views.viewport import Viewport
 from pinwarp.gui.warp.warps import Warps
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.survey import Survey
-from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.session import Session
 from pinwarp.session.signals import isolated
 from pinwarp.session.view import ViewState
@@ -316,7 +316,14 @@ class MapPresenter(Capability):
         if survey is None or survey.map is None or survey.kind is not view.map:
             return None
         kept = None if self._kept_ranges is None else self._kept_ranges.get(survey.map.kind)
-        return ColourScale(survey.map.kind, view.map_range or kept or survey.map.range)
+        return ColourScale(
+            survey.map.kind, view.map_range or kept or survey.map.range, self._ruler.factor
+        )
+
+    @property
+    def _ruler(self) -> Ruler:
+        """How what is measured on the destination is told."""
+        return self._editor.rulers.destination
 
     def keep_ranges(self, kept: bool) -> None:
         """Keep the colours' range as it is while warps are compared, or let it follow again."""
@@ -330,10 +337,8 @@ class MapPresenter(Capability):
 
     def _show(self) -> None:
         """Show the last survey as the view state wants it."""
-        session, scale = self._editor.session, self._scale()
-        self.panel.show_survey(
-            self.survey, self._editor.view, session.unit, scale, self._taken_by()
-        )
+        scale = self._scale()
+        self.panel.show_survey(self.survey, self._editor.view, self._ruler, scale, self._taken_by())
         self.survey_shown.emit(self.survey)
         self._scenes.renew()
 
@@ -342,7 +347,7 @@ class MapPresenter(Capability):
         if side is Side.SOURCE:
             suggestion = self._suggestion() if self._taken_by() is None else None
             if suggestion is not None:
-                yield Star(suggestion, unit_on(self._editor.session, side))
+                yield Star(suggestion, self._ruler.text(suggestion.deviation, 2))
             return
         if self.panel.work.words:
             yield Badge(self.panel.work.words)
@@ -364,10 +369,11 @@ class MapPresenter(Capability):
         (low, high), found = scale.range, survey.map
         return Legend(
             title=title_of(found.kind, fitted=survey.is_fitted),
-            note=note_of(found, self._editor.session.unit),
+            note=note_of(found, self._ruler.unit),
             kind=scale.kind,
             range=scale.range,
             # What differs in the last digits only is not beyond the end.
             clipped=(found.lowest < low - 1e-6 * (high - low), found.highest > high * (1 + 1e-6)),
             fixed=view.map_range is not None,
+            factor=scale.factor,
         )

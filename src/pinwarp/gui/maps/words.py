@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.maps import MapKind, SurfaceMap
 
+_RATIO = Ruler()
 TITLES = {
     MapKind.DISTANCE: "Distance to the destination",
     MapKind.VOLUME: "Volume change",
@@ -86,13 +88,16 @@ def note_of(found: SurfaceMap, unit: str) -> str:
     return f"relative to the overall size (lengths × {found.overall:.3g})"
 
 
-def figure(value: float, unit: str = "") -> str:
+def figure(value: float, ruler: Ruler = _RATIO) -> str:
     """Return a figure of a map in three digits.
 
     Examples
     --------
-    >>> figure(2.2493, "mm"), figure(0.00763, "m"), figure(12345.6)
-    ('2.25 mm', '0.00763 m', '12346')
+    >>> figure(2.2493, Ruler("mm")), figure(0.00769, Ruler("mm", 1000.0)), figure(12345.6)
+    ('2.25 mm', '7.69 mm', '12346')
+    >>> figure(1.275e-19, Ruler("mm", 1000.0, 4e-10)), figure(0.0)
+    ('0 mm', '0')
     """
-    text = f"{value:.0f}" if abs(value) >= 1000 else f"{value:#.3g}".rstrip(".")
-    return f"{text} {unit}".rstrip()
+    value = ruler.shown(value)
+    text = f"{value:.0f}" if abs(value) >= 1000 or not value else f"{value:#.3g}".rstrip(".")
+    return f"{text} {ruler.unit}".rstrip()

@@ -143,7 +143,7 @@ class PaintedLegend(QWidget):
         return top + GAP / 2
 
     def _paint_bar(self, painter: QPainter, content: Legend, bar: QRectF) -> None:
-        scale = ColourScale(content.kind, content.range)
+        scale = ColourScale(content.kind, content.range, content.factor)
         low, high = scale.ends
         rows = 256
         levels = [high - (high - low) * (row + 0.5) / rows for row in range(rows)]
@@ -176,7 +176,7 @@ class PaintedLegend(QWidget):
         painter.setFont(self.font())
         painter.setPen(QPen(QColor(theme.INK), 1))
         line = painter.fontMetrics().height()
-        for tick in ColourScale(content.kind, content.range).ticks():
+        for tick in ColourScale(content.kind, content.range, content.factor).ticks():
             y = bar.bottom() - tick.share * bar.height()
             painter.drawLine(QPointF(bar.right(), y), QPointF(bar.right() + 4, y))
             box = QRectF(bar.right() + GAP, y - line / 2, self.width(), line)

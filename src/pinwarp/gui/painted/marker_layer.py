@@ -260,7 +260,9 @@ class MarkerLayer(QWidget):
         length = self._projection.unit_per_pixel
         if not 0 < length < math.inf:
             return
-        where = paint_scale_bar(painter, QRectF(self.rect()), length, bar.unit, dark=self._dark)
+        ruler, whole = bar.ruler, QRectF(self.rect())
+        shown = ruler.factor * length
+        where = paint_scale_bar(painter, whole, shown, ruler.unit, dark=self._dark)
         self._free_until = where.left()
 
     def _paint_next_click(self, painter: QPainter, step: NextClick) -> None:
@@ -350,7 +352,7 @@ class MarkerLayer(QWidget):
         at, hidden = QPointF(x, y), bool(self._projection.behind_surface(position)[0])
         painter.setOpacity(0.5 if hidden else 1.0)
         draw_star(painter, at)
-        words = f"next landmark helps most here (± {suggestion.deviation:.2g} {star.unit})"
+        words = f"next landmark helps most here (± {star.deviation})"
         self._labels.keep_free(draw_label_below(painter, words, at, self.room_at(at), STAR_RADIUS))
         painter.setOpacity(1.0)
 

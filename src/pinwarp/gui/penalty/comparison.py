@@ -13,7 +13,6 @@ from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.penalty.passing_preview import PassingPreview
 from pinwarp.gui.scene.drawables import Badge, Drawable
-from pinwarp.gui.style.lengths import format_length
 from pinwarp.gui.views.scenes import Scenes
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
@@ -117,7 +116,7 @@ class PenaltyComparison(Capability):
             self._say(_NONE_YET)
         elif not self._editor.is_previewing:
             self._preview.show(edits.set_penalty(self._editor.committed, previous))
-            length = format_length(previous, self._editor.committed.unit, 3)
+            length = self._editor.rulers.session.text(previous, 3)
             self._show_badge(f"B: previous penalty {length} (hold)")
 
     def _on_ended(self) -> None:

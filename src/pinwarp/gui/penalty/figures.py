@@ -9,10 +9,9 @@ from qtpy.QtGui import QResizeEvent
 from qtpy.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QWidget
 
 from pinwarp.core.findings import FindingKind
-from pinwarp.core.lengths import rounding_among
+from pinwarp.core.lengths import Ruler, rounding_among
 from pinwarp.core.spline import PenaltyConvention
 from pinwarp.gui.style import theme
-from pinwarp.gui.style.lengths import format_length
 from pinwarp.session.session import Session
 from pinwarp.session.warp.result import WarpResult
 
@@ -59,23 +58,23 @@ class PenaltyFigures(QWidget):
             row.addWidget(figure)
         row.addStretch(1)
 
-    def show_result(self, result: WarpResult | None, unit: str) -> None:
+    def show_result(self, result: WarpResult | None, ruler: Ruler) -> None:
         """Show residual and pairs of a warp."""
         refined = result is not None and result.inputs.refinement is not None
         for figure in (self.flexibility, self.left_out):
             figure.show_more(_LANDMARKS_ONLY if refined else "")
         rms = tidy_residual(result)
-        self.residual.show_text(NO_FIGURE if rms is None else format_length(rms, unit))
+        self.residual.show_text(NO_FIGURE if rms is None else ruler.text(rms))
         self.pairs.show_text(str(len(result.inputs.source) if result is not None else 0))
 
     def show_flexibility(self, flexibility: float | None) -> None:
         """Show the flexibility, or that there is none to speak of."""
         self.flexibility.show_text(NO_FIGURE if flexibility is None else f"{flexibility:.0%}")
 
-    def show_left_out(self, length: float, unit: str) -> None:
+    def show_left_out(self, length: float, ruler: Ruler) -> None:
         """Show the leave-one-out error; NaN where there is none."""
         known = math.isfinite(length)
-        self.left_out.show_text(format_length(length, unit, 3) if known else NO_FIGURE)
+        self.left_out.show_text(ruler.text(length, 3) if known else NO_FIGURE)
 
 
 class Notes(QLabel):
@@ -117,7 +116,7 @@ def tidy_residual(result: WarpResult | None) -> float | None:
     return 0.0 if rms < rounding_among(result.inputs.destination) else rms
 
 
-def warnings_of(session: Session, result: WarpResult | None) -> str:
+def warnings_of(session: Session, result: WarpResult | None, ruler: Ruler) -> str:
     """Say what must be known about a warp before its figures are trusted.
 
     Parameters
@@ -126,6 +125,8 @@ def warnings_of(session: Session, result: WarpResult | None) -> str:
         Whose pairs have the names.
     result
         The warp.
+    ruler
+        How lengths are told.
     """
     if result is not None and result.problem:
         return result.problem
@@ -135,7 +136,7 @@ def warnings_of(session: Session, result: WarpResult | None) -> str:
     if result is not None and result.spline is not None:
         names = [pair.name for pair in session.pairs]
         notes = [
-            finding.describe(names, session.unit)
+            finding.describe(names, ruler)
             for finding in result.spline.findings
             if all(row < len(names) for row in finding.rows)
         ]

@@ -21,7 +21,6 @@ from qtpy.QtWidgets import (
 
 from pinwarp.core.factor import SourceFactor
 from pinwarp.core.findings import FindingKind
-from pinwarp.core.landmarks import Side
 from pinwarp.core.quality import PenaltyCurve
 from pinwarp.core.spline import PenaltyConvention
 from pinwarp.gui.penalty.figures import (
@@ -34,10 +33,9 @@ from pinwarp.gui.penalty.figures import (
 from pinwarp.gui.penalty.plot import PenaltyPlot, Plotted
 from pinwarp.gui.penalty.slider import STEPS, PenaltySlider
 from pinwarp.gui.style import theme
-from pinwarp.gui.style.lengths import format_length
 from pinwarp.session.edits import UNITS
 from pinwarp.session.judging.quality import LEAST_PAIRS, Quality, penalty_advice
-from pinwarp.session.mesh_units import unit_on
+from pinwarp.session.rulers import Rulers
 from pinwarp.session.session import Session
 from pinwarp.session.warp.result import WarpResult
 
@@ -76,6 +74,7 @@ class PenaltyPanel(QWidget):
         self._factor: SourceFactor | None = None
         self._result: WarpResult | None = None
         self._quality: Quality | None = None
+        self._rulers = Rulers()
         self._session = Session()
         self._sliding = False
 
@@ -90,9 +89,10 @@ class PenaltyPanel(QWidget):
         self.value.setAccessibleName("Warping penalty")
         self.value.setAlignment(Qt.AlignmentFlag.AlignRight)
         self.value.setFixedWidth(self.fontMetrics().horizontalAdvance("0.00000000") + 14)
-        self.value.setToolTip("The exact penalty, a length in mesh units, or “affine”")
+        self.value.setToolTip("The exact penalty, a length such as 5 or 0.5 cm, or “affine”")
+        self.shown_unit = QLabel()
         self.unit = QComboBox()
-        self.unit.setToolTip("The unit of the meshes: shown beside numbers, nothing is converted")
+        self.unit.setToolTip("The unit that the files are in: nothing is converted")
         self.figures = PenaltyFigures()
         self.convention = QComboBox()
         for convention, text in _CONVENTIONS.items():
@@ -131,6 +131,8 @@ class PenaltyPanel(QWidget):
         exact = QHBoxLayout()
         exact.setSpacing(4)
         exact.addWidget(self.value)
+        exact.addWidget(self.shown_unit)
+        exact.addWidget(QLabel("files in"))
         exact.addWidget(self.unit)
         exact.addSpacing(theme.SPACE)
         exact.addWidget(self.convention, 1)
@@ -168,17 +170,27 @@ class PenaltyPanel(QWidget):
 
     # What is shown
 
+    def show_rulers(self, rulers: Rulers) -> None:
+        """Show all lengths in another unit."""
+        self._rulers = rulers
+        self.show_result(self._result)
+        self._show_curve()
+        self._show_present()
+        self._show_value()
+
+    def _show_value(self) -> None:
+        if not self.value.hasFocus() or not self.value.isModified():
+            penalty = self._session.settings.penalty
+            self.value.setText(self._rulers.session.number(penalty, 6))
+            self.value.setModified(False)
+        self.shown_unit.setText(self._rulers.session.unit)
+
     def show_session(self, session: Session) -> None:
         """Show the penalty of a session."""
         before, self._session = self._session, session
-        if session.unit != before.unit:
-            self.show_result(self._result)
-        if (session.unit, session.settings.convention) != (before.unit, before.settings.convention):
+        if session.settings.convention != before.settings.convention:
             self._show_curve()
-        if not self.value.hasFocus() or not self.value.isModified():
-            penalty = session.settings.penalty
-            self.value.setText("affine" if math.isinf(penalty) else f"{penalty:.6g}")
-            self.value.setModified(False)
+        self._show_value()
         self._show_unit(session.unit)
         self.convention.setCurrentIndex(self.convention.findData(session.settings.convention))
         self._place_handle()
@@ -192,7 +204,7 @@ class PenaltyPanel(QWidget):
 
     def show_result(self, result: WarpResult | None) -> None:
         """Show what the penalty does."""
-        self.figures.show_result(result, unit_on(self._session, Side.DESTINATION))
+        self.figures.show_result(result, self._rulers.destination)
         if result is not None and result.factor is not None and not result.factor.has_modes:
             # While a source landmark moves, the penalty's scale is not known: it will be at rest.
             return
@@ -236,7 +248,7 @@ class PenaltyPanel(QWidget):
         return self._quality.curve if self._quality is not None else None
 
     def _show_curve(self) -> None:
-        curve, factor, unit = self._curve, self._factor, self._session.unit
+        curve, factor, rulers = self._curve, self._factor, self._rulers
         if curve is None or factor is None or self._quality is None:
             count = len(self._result.inputs.source) if self._result is not None else 0
             self.plot.show_curve(
@@ -248,28 +260,31 @@ class PenaltyPanel(QWidget):
             title += [] if regular else ["by the regularising convention"]
             title += [] if self._quality.inputs.settings.is_whole else ["of the whole warp"]
             title += [] if self._quality.inputs.refinement is None else ["not refined"]
-            self.plot.show_curve(Plotted(curve, factor, unit, regular, ", ".join(title)))
+            told = (rulers.session, rulers.destination)
+            self.plot.show_curve(Plotted(curve, factor, *told, regular, ", ".join(title)))
         self._show_suggestion()
 
     def _show_words(self) -> None:
         curve = self._curve
-        advice = penalty_advice(curve, self._session.unit) if curve is not None else ""
+        advice = penalty_advice(curve, self._rulers.session) if curve is not None else ""
         if curve is not None and self._session.settings.convention is PenaltyConvention.OPYNSIM:
             advice = ""
         is_solved = self._result is not None and self._result.spline is not None
         if is_solved and not self._penalty_acts:
             advice = _TOO_FEW
-        self.warning.show_words(warnings_of(self._session, self._result), advice)
+        self.warning.show_words(
+            warnings_of(self._session, self._result, self._rulers.session), advice
+        )
 
     def _show_suggestion(self) -> None:
         curve, penalty = self._curve, self.suggestion
         there = penalty is not None and penalty == self._session.settings.penalty
         self.suggested.setEnabled(penalty is not None and not there)
         words = "No penalty suggested"
-        unit = self._session.unit
-        tip = penalty_advice(curve, unit) if curve is not None else self._without_suggestion
+        ruler = self._rulers.session
+        tip = penalty_advice(curve, ruler) if curve is not None else self._without_suggestion
         if penalty is not None:
-            length = format_length(penalty, self._session.unit, 3)
+            length = ruler.text(penalty, 3)
             words = f"At suggested: {length}" if there else f"Use suggested: {length}"
             tip = f"The penalty with the least leave-one-out error (T). {tip}"
         elif self._waits_for:
@@ -284,9 +299,8 @@ class PenaltyPanel(QWidget):
         session = self._session
         share = self._share_of(session.settings.penalty)
         figures = self._figures_at(session.settings.penalty, share)
-        unit = unit_on(session, Side.DESTINATION)
         left_out = figures[0] if figures else self._left_out_alone()
-        self.figures.show_left_out(left_out, unit)
+        self.figures.show_left_out(left_out, self._rulers.destination)
         self.plot.show_present(share if self._penalty_acts else None, figures)
         self._show_suggestion()
 
@@ -372,9 +386,10 @@ class PenaltyPanel(QWidget):
     def _on_typed(self) -> None:
         if not self.value.isModified():
             return
-        text = self.value.text().strip().lower().removesuffix(self._session.unit).strip()
+        text = self.value.text().strip().lower()
         try:
-            penalty = math.inf if text in ("affine", "inf", "∞") else float(text.replace(",", "."))
+            affine = text in ("affine", "inf", "∞")
+            penalty = math.inf if affine else self._rulers.session.length(text)
             valid = penalty >= 0
         except ValueError:
             valid = False
@@ -383,7 +398,7 @@ class PenaltyPanel(QWidget):
             self.warning.show_words(
                 f"“{self.value.text()}” is not a penalty: type a number of 0 or more, or “affine”."
             )
-            self.value.setText(f"{self._session.settings.penalty:.6g}")
+            self._show_value()
             return
         self.penalty_requested.emit(penalty)
 

@@ -25,10 +25,11 @@ from qtpy.QtGui import (
 from qtpy.QtWidgets import QSizePolicy, QWidget
 
 from pinwarp.core.factor import SourceFactor
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.quality import PenaltyCurve
 from pinwarp.gui.penalty.slider import PenaltySlider
 from pinwarp.gui.style import theme
-from pinwarp.gui.style.lengths import format_length, format_number, ticks
+from pinwarp.gui.style.lengths import ticks
 
 # How near to the suggestion's sign a click takes it, and half of its width.
 REACH = 7
@@ -44,8 +45,8 @@ class Plotted:
     ----------
     curve, factor
         The figures, and the source landmarks that give a place on the axis its penalty.
-    unit
-        Of the lengths.
+    ruler, on_destination
+        How lengths on the source, such as the penalty, and on the destination are told.
     suggests
         Whether the suggestion may be taken.
     title
@@ -54,7 +55,8 @@ class Plotted:
 
     curve: PenaltyCurve
     factor: SourceFactor
-    unit: str
+    ruler: Ruler
+    on_destination: Ruler
     suggests: bool
     title: str
 
@@ -62,7 +64,12 @@ class Plotted:
     def looks(self) -> tuple[object, ...]:
         """All that axis and curves depend on: the same figures come anew while one slides."""
         curve = self.curve
-        return (curve.leave_one_out.tobytes(), curve.residual.tobytes(), self.unit)
+        return (
+            curve.leave_one_out.tobytes(),
+            curve.residual.tobytes(),
+            self.ruler,
+            self.on_destination,
+        )
 
     @cached_property
     def top(self) -> float:
@@ -76,14 +83,12 @@ class Plotted:
         left_out, residual = self.curve.at(1.0 - share)
         penalty = self.factor.penalty_at(1.0 - share)
         words = [
-            "affine fit"
-            if math.isinf(penalty)
-            else f"penalty {format_length(penalty, self.unit, 3)}",
+            "affine fit" if math.isinf(penalty) else f"penalty {self.ruler.text(penalty, 3)}",
             f"flexibility {1 - share:.0%}",
         ]
         if math.isfinite(left_out):
-            words.append(f"leave-one-out {format_length(left_out, self.unit, 3)}")
-        words.append(f"residual {format_length(residual, self.unit, 3)}")
+            words.append(f"leave-one-out {self.on_destination.text(left_out, 3)}")
+        words.append(f"residual {self.on_destination.text(residual, 3)}")
         return "   ".join(words)
 
 
@@ -239,13 +244,14 @@ class PenaltyPlot(QWidget):
         line = self._line
         faint = QColor(self._quiet)
         faint.setAlphaF(0.25)
-        lengths = ticks(plotted.top)
+        ruler = plotted.on_destination
+        lengths = [ruler.stored(shown) for shown in ticks(ruler.factor * plotted.top)]
         for length in lengths if not plotted.curve.is_affine else (0.0,):
             y = round(self._level(length)) + 0.5
             painter.setPen(QPen(faint, 1))
             painter.drawLine(QLineF(area.left(), y, area.right(), y))
             last = length == lengths[-1]
-            text = f"{length:.12g}" + (f" {plotted.unit}" if last else "")
+            text = f"{ruler.factor * length:.12g}" + (f" {ruler.unit}" if last else "")
             painter.setPen(self._quiet)
             words = QRectF(0, y - line / 2 - 1, area.left() - 6, line)
             painter.drawText(words, Qt.AlignmentFlag.AlignRight, text)
@@ -292,6 +298,7 @@ class PenaltyPlot(QWidget):
             )
             if math.isfinite(value)
         ]
+        told = self._plotted.on_destination if self._plotted is not None else Ruler()
         height = self._line
         lowest = area.bottom() - height * (len(shown) - 0.5)
         highest = area.top() + height / 2
@@ -302,7 +309,7 @@ class PenaltyPlot(QWidget):
             painter.setBrush(colour)
             painter.drawEllipse(QPointF(x, level), 4, 4)
             middle = min(max(level + aside * height, highest), lowest)
-            self._paint_figure(painter, format_number(value), colour, QPointF(x, middle))
+            self._paint_figure(painter, told.number(value, 3), colour, QPointF(x, middle))
             # The residual, which is never the larger, stands below.
             highest, lowest = middle + height, lowest + height
 

@@ -31,9 +31,9 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui.style import theme
-from pinwarp.gui.style.lengths import format_length, format_number
 from pinwarp.session.warp.result import WarpInputs
 
 # The largest picture, in logical pixels.
@@ -54,8 +54,8 @@ class Snapshot:
         The source mesh, as long as somebody else holds it; None where there was none.
     flexibility, leave_one_out, residual
         Its figures; None where there is none.
-    unit
-        Of its lengths.
+    ruler
+        How its lengths are told.
     """
 
     picture: QImage
@@ -64,7 +64,7 @@ class Snapshot:
     flexibility: float | None
     leave_one_out: float | None
     residual: float | None
-    unit: str
+    ruler: Ruler
 
     def what_changed(self, now: WarpInputs) -> str:
         """Say in words why the picture does not hold any more; empty where it does."""
@@ -91,7 +91,7 @@ class Snapshot:
     def title(self) -> str:
         """The penalty in words."""
         penalty = self.inputs.settings.penalty
-        return "Affine fit" if math.isinf(penalty) else format_length(penalty, self.unit, 3)
+        return "Affine fit" if math.isinf(penalty) else self.ruler.text(penalty, 3)
 
     @property
     def lines(self) -> tuple[str, ...]:
@@ -99,7 +99,7 @@ class Snapshot:
         figures = [] if self.flexibility is None else [f"{self.flexibility:.0%} flexible"]
         for words, length in (("LOO", self.leave_one_out), ("Resid.", self.residual)):
             if length is not None:
-                figures.append(f"{words} {format_number(length)}")
+                figures.append(f"{words} {self.ruler.number(length, 3)}")
         return tuple(figures)
 
 
@@ -156,11 +156,7 @@ class SnapshotTile(QFrame):
         left_out = shot.leave_one_out
         self.setToolTip(
             f"Click to take the penalty {shot.title}{still}"
-            + (
-                f"\nRMS leave-one-out error {format_length(left_out, shot.unit)}"
-                if left_out
-                else ""
-            )
+            + (f"\nRMS leave-one-out error {shot.ruler.text(left_out)}" if left_out else "")
         )
         self.setAccessibleName(f"Snapshot: {shot.title}")
 

@@ -185,7 +185,7 @@ class Snapshots(Capability):
             flexibility=flexibility,
             leave_one_out=left_out if left_out is not None and np.isfinite(left_out) else None,
             residual=tidy_residual(result),
-            unit=self._editor.session.unit,
+            ruler=self._editor.rulers.session,
         )
 
     def _on_penalty(self, penalty: float) -> None:

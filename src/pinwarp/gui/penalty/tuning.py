@@ -62,6 +62,7 @@ class PenaltyTuning(Capability):
             Panel("penalty", "Warping penalty", self._dock, BOTTOM, self._dock.height_changed),
         )
         self._connect()
+        self.panel.show_rulers(editor.rulers)
         self.panel.show_session(editor.session)
         self._on_quality(quality.quality)
         self.panel.show_plot(editor.view.curve)
@@ -77,6 +78,7 @@ class PenaltyTuning(Capability):
         panel.unit_requested.connect(
             lambda unit: editor.commit(edits.set_unit(editor.committed, unit), "Change unit")
         )
+        editor.rulers_changed.connect(panel.show_rulers)
         editor.session_changed.connect(panel.show_session)
         editor.view_changed.connect(self._on_view)
         self._warps.result_changed.connect(self._on_result)
@@ -85,6 +87,7 @@ class PenaltyTuning(Capability):
 
     def shut_down(self) -> None:
         """Let go of the editor, the warps and the figures."""
+        self._editor.rulers_changed.disconnect(self.panel.show_rulers)
         self._editor.session_changed.disconnect(self.panel.show_session)
         self._editor.view_changed.disconnect(self._on_view)
         self._warps.result_changed.disconnect(self._on_result)

@@ -203,8 +203,8 @@ class Guidance(Capability):
         for side in Side:
             off = self._hand.distance_off(landmark, side)
             if off:
-                unit = self._editor.session.unit
-                words.append(f"{off:.3g} {unit} off the {side.value} surface ({snap} snaps)")
+                far = self._editor.rulers.on(side).text(off, 3)
+                words.append(f"{far} off the {side.value} surface ({snap} snaps)")
         if landmark.locked or self._editor.view.locked:
             words.append("locked")
         else:
@@ -249,16 +249,16 @@ class Guidance(Capability):
 
     def ask_nudge(self) -> None:
         """Ask how far an arrow key moves."""
-        unit, current = self._editor.session.unit, self._editor.view.nudge
+        ruler, current = self._editor.rulers.session, self._editor.view.nudge
         text = self._tasks.dialogs.ask_text(
             "Nudge step",
-            f"An arrow key moves a landmark by this many {unit} (empty: 1/500 of the bone):",
-            "" if current is None else f"{current:g}",
+            f"An arrow key moves a landmark by this many {ruler.unit} (empty: 1/500 of the bone):",
+            "" if current is None else f"{ruler.shown(current):g}",
         )
         if text is None:
             return
         try:
-            step = float(text.replace(",", ".")) if text.strip() else None
+            step = ruler.length(text) if text.strip() else None
         except ValueError:
             step = 0.0
         if step is not None and not 0 < step < float("inf"):

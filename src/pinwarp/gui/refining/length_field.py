@@ -7,7 +7,7 @@ import math
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtWidgets import QCheckBox, QHBoxLayout, QLabel, QLineEdit, QWidget
 
-from pinwarp.gui.style.lengths import format_number
+from pinwarp.core.lengths import Ruler
 
 _SAME = 1e-9
 
@@ -37,6 +37,7 @@ class LengthField(QWidget):
         self._name, self._may_be_zero = name, may_be_zero
         self._value: float | None = None
         self._usual = math.nan
+        self._ruler = Ruler()
         self.line = QLineEdit()
         self.line.setAccessibleName(name)
         self.line.setAlignment(Qt.AlignmentFlag.AlignRight)
@@ -66,10 +67,10 @@ class LengthField(QWidget):
         """What is shown."""
         return self._usual if self._value is None else self._value
 
-    def show_usual(self, usual: float, unit: str) -> None:
+    def show_usual(self, usual: float, ruler: Ruler) -> None:
         """Show what is usual; NaN where nothing is."""
-        self._usual = usual
-        self.unit.setText(unit)
+        self._usual, self._ruler = usual, ruler
+        self.unit.setText(ruler.unit)
         self._show()
 
     def show_value(self, value: float | None) -> None:
@@ -81,8 +82,7 @@ class LengthField(QWidget):
     def _show(self) -> None:
         self.box.setChecked(self._value is None)
         if not (self.line.hasFocus() and self.line.isModified()):
-            words = "" if math.isnan(self.length) else format_number(self.length, 4)
-            self.line.setText("affine" if math.isinf(self.length) else words)
+            self.line.setText("" if math.isnan(self.length) else self._ruler.number(self.length))
             self.line.setModified(False)
 
     def _on_box(self, usual: bool) -> None:
@@ -94,9 +94,9 @@ class LengthField(QWidget):
         if not self.line.isModified():
             return
         self.line.setModified(False)
-        text = self.line.text().strip().removesuffix(self.unit.text()).strip()
+        text = self.line.text().strip()
         try:
-            value = float(text.replace(",", "."))
+            value = self._ruler.length(text)
         except ValueError:
             value = math.nan
         if math.isfinite(value) and (value > 0 or (value == 0 and self._may_be_zero)):

@@ -22,6 +22,7 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.features import FeatureRange
+from pinwarp.core.lengths import Ruler
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.refining.length_field import LengthField
 from pinwarp.gui.refining.words import ABOUT, worth_as_html, worth_in_words
@@ -97,7 +98,7 @@ class RefiningPanel(QScrollArea):
         self._connect()
         self.show_idle()
         self.show_problem("")
-        self.show_worth(None, "")
+        self.show_worth(None, Ruler())
         self.turned.hide()
 
     def _lay_out(self) -> None:
@@ -173,13 +174,13 @@ class RefiningPanel(QScrollArea):
         self.turned.setChecked(turned)
         self.turned.setVisible(turned or not self.turned.isHidden())
 
-    def show_usual(self, features: FeatureRange | None, penalty: float, unit: str) -> None:
+    def show_usual(self, features: FeatureRange | None, penalty: float, ruler: Ruler) -> None:
         """Show what is taken without a choice; no range of features without a source mesh."""
         self._range = features
-        self.feature.show_usual(math.nan if features is None else features.usual, unit)
+        self.feature.show_usual(math.nan if features is None else features.usual, ruler)
         self.feature.setEnabled(features is not None)
         self.slider.setEnabled(features is not None)
-        self.tolerance.show_usual(penalty, unit)
+        self.tolerance.show_usual(penalty, ruler)
         self._place_handle()
 
     def _place_handle(self) -> None:
@@ -262,13 +263,13 @@ class RefiningPanel(QScrollArea):
         self._choices.setEnabled(not busy)
         self.cancel.setEnabled(busy)
 
-    def show_worth(self, worth: Verification | None, unit: str) -> None:
+    def show_worth(self, worth: Verification | None, ruler: Ruler) -> None:
         """Show what the check found; None before it."""
         for label in (self.sentence, self.table):
             label.setVisible(worth is not None)
         if worth is not None:
-            self.sentence.setText(worth_in_words(worth, unit))
-            self.table.setText(worth_as_html(worth, unit))
+            self.sentence.setText(worth_in_words(worth, ruler))
+            self.table.setText(worth_as_html(worth, ruler))
 
 
 def _words(text: str = "") -> QLabel:

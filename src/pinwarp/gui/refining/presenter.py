@@ -132,6 +132,7 @@ class RefiningPresenter(Capability):
         self._fits.failed.connect(self._on_failure)
         self._warps.result_changed.connect(self._on_result)
         self._maps.map_changed.connect(self._on_survey)
+        self._editor.rulers_changed.connect(self._on_rulers)
         self._editor.session_changed.connect(self._on_session)
 
     def shut_down(self) -> None:
@@ -139,6 +140,7 @@ class RefiningPresenter(Capability):
         self.run.shut_down()
         self._without.end()
         self._editor.session_changed.disconnect(self._on_session)
+        self._editor.rulers_changed.disconnect(self._on_rulers)
         self._maps.map_changed.disconnect(self._on_survey)
         self._warps.result_changed.disconnect(self._on_result)
         self._fits.shut_down()
@@ -196,6 +198,9 @@ class RefiningPresenter(Capability):
         return self.run.level is not None or refinement_in_use(self._editor.committed) is not None
 
     # What changed
+
+    def _on_rulers(self, _rulers: object) -> None:
+        self._on_session()
 
     def _on_session(self, _session: Session | None = None) -> None:
         editor = self._editor
@@ -275,7 +280,7 @@ class RefiningPresenter(Capability):
             self.panel.show_options(RefinementOptions())
             self._shown_options = None
         features = None if self._features is None else self._features[1]
-        self.panel.show_usual(features, session.settings.penalty, session.unit)
+        self.panel.show_usual(features, session.settings.penalty, self._editor.rulers.session)
         refined = session.refinement
         if refined is not None and refined != self._shown_options:
             # Refining again is then the same again.
@@ -303,7 +308,7 @@ class RefiningPresenter(Capability):
             if self._checked is not None and self._checked.refinement == refined:
                 worth = self._checked.worth
         panel.show_state(state, again=again, is_warning=again and refined is None)
-        panel.show_worth(worth, session.unit)
+        panel.show_worth(worth, self._editor.rulers.session)
 
     def _refined_in_words(self, session: Session, refined: RefinementRecord) -> str:
         fit = self._fit if self._fit is not None and self._fit.refinement == refined else None
@@ -311,7 +316,9 @@ class RefiningPresenter(Capability):
         # Folds are looked for in what is applied.
         if self._folds is not None and self._folds[0] == refined and session.settings.is_whole:
             folds = self._folds[1]
-        return words.refined_in_words(refined, len(session.pairs), session.unit, fit, folds)
+        return words.refined_in_words(
+            refined, len(session.pairs), self._editor.rulers.session, fit, folds
+        )
 
     def _renew_actions(self) -> None:
         for action in self.actions:

@@ -152,7 +152,7 @@ class RefiningRun(QObject):
         task = self._task
         if task is None:
             return
-        stage = words.level_in_words(level, task.session.unit)
+        stage = words.level_in_words(level, self._editor.rulers.session)
         self.progressed.emit(stage, level.number / level.count)
         self._set_level(record_at(task.session, level))
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import html
 import math
 
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.refinement import Level
 from pinwarp.core.words import counted
 from pinwarp.gui.refining.fit import Fit
 from pinwarp.gui.style import theme
-from pinwarp.gui.style.lengths import format_length, format_number
 from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.session.warp.refining import Verification
 
@@ -34,20 +34,20 @@ ALREADY_TURNED = "Taken the other way round, the surfaces face opposite ways: th
 COVERED = 0.9
 
 
-def level_in_words(level: Level, unit: str) -> str:
+def level_in_words(level: Level, ruler: Ruler) -> str:
     """Say which level is drawn.
 
     Examples
     --------
-    >>> level_in_words(Level(3, 8, 42.13, None, 150, 150, 0, 0.1), "mm")
+    >>> level_in_words(Level(3, 8, 42.13, None, 150, 150, 0, 0.1), Ruler("mm"))
     'Level 3 of 8: features larger than 42.1 mm'
     """
-    feature = format_length(level.feature, unit, 3)
+    feature = ruler.text(level.feature, 3)
     return f"Level {level.number} of {level.count}: features larger than {feature}"
 
 
 def refined_in_words(
-    refined: RefinementRecord, pairs: int, unit: str, fit: Fit | None, folds: int | None
+    refined: RefinementRecord, pairs: int, ruler: Ruler, fit: Fit | None, folds: int | None
 ) -> str:
     """Say what was fitted, and how.
 
@@ -57,20 +57,20 @@ def refined_in_words(
         A refinement in use.
     pairs
         How many landmarks take part.
-    unit
-        Of the session.
+    ruler
+        How lengths are told.
     fit, folds
         What was measured; None while it is not known.
 
     Examples
     --------
     >>> record = RefinementRecord(((0, 0, 0),) * 16, ((0, 0, 0),) * 16, 6.5, places=13)
-    >>> print(refined_in_words(record, 4, "mm", Fit(record, 2.37, 0.264), 0))
+    >>> print(refined_in_words(record, 4, Ruler("mm"), Fit(record, 2.37, 0.264), 0))
     Refined: 12 of 13 places fitted, features larger than 6.5 mm. No folds.
     Mean distance 2.37 → 0.264 mm (fitted): it proves nothing.
     """
     fitted = len(refined.source) - pairs
-    feature = format_length(refined.smallest_feature, unit, 3)
+    feature = ruler.text(refined.smallest_feature, 3)
     words = [
         f"Refined: {fitted:,} of {counted(refined.places, 'place')} fitted, features larger than "
         f"{feature}."
@@ -80,7 +80,7 @@ def refined_in_words(
             f"{refined.places - fitted:,} have no counterpart: the warp is a guess around them."
         )
     if refined.landmark_tolerance > 0:
-        words.append(f"Landmark tolerance {format_length(refined.landmark_tolerance, unit, 3)}.")
+        words.append(f"Landmark tolerance {ruler.text(refined.landmark_tolerance, 3)}.")
     if refined.folding:
         words.append(
             f"{counted(refined.folding, 'vertex', 'vertices')} would have folded, so that an "
@@ -92,32 +92,32 @@ def refined_in_words(
         )
     lines = [" ".join(words)]
     if fit is not None and fit.before is not None and fit.after is not None:
-        before, after = format_number(fit.before), format_length(fit.after, unit, 3)
+        before, after = ruler.number(fit.before, 3), ruler.text(fit.after, 3)
         lines.append(f"Mean distance {before} → {after} (fitted): it proves nothing.")
     return "\n".join(lines)
 
 
-def worth_in_words(worth: Verification, unit: str) -> str:
+def worth_in_words(worth: Verification, ruler: Ruler) -> str:
     """Say what a refinement is worth, in a sentence."""
     if not worth.judged:
         return "No landmark could be left out: see why below."
     (rms_before, rms_after), (before, after) = worth.rms(), worth.median()
     return (
         f"Left out one by one, {worth.improved} of {counted(worth.judged, 'landmark')} "
-        f"{'is' if worth.improved == 1 else 'are'} missed by less: RMS {format_number(rms_before)} "
-        f"→ {format_length(rms_after, unit, 3)}, median {format_number(before)} → "
-        f"{format_length(after, unit, 3)}."
+        f"{'is' if worth.improved == 1 else 'are'} missed by less: RMS "
+        f"{ruler.number(rms_before, 3)} → {ruler.text(rms_after, 3)}, "
+        f"median {ruler.number(before, 3)} → {ruler.text(after, 3)}."
     )
 
 
-def worth_as_html(worth: Verification, unit: str) -> str:
+def worth_as_html(worth: Verification, ruler: Ruler) -> str:
     """Return a small table: by how much each landmark is missed, unrefined and refined."""
-    head = ("Left out", f"Before, {unit}", f"Refined, {unit}")
+    head = ("Left out", f"Before, {ruler.unit}", f"Refined, {ruler.unit}")
     rows = [_row(head, "th")]
     for name, before, after in zip(
         worth.names, worth.before.tolist(), worth.after.tolist(), strict=True
     ):
-        numbers = ("–" if math.isnan(x) else format_number(x) for x in (before, after))
+        numbers = ("–" if math.isnan(x) else ruler.number(x, 3) for x in (before, after))
         rows.append(_row((name, *numbers), "td", worse=after > before))
     problems = "".join(f"<p>{html.escape(problem)}</p>" for problem in worth.problems)
     return f'<table cellspacing="0" cellpadding="2">{"".join(rows)}</table>{problems}'

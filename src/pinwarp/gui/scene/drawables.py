@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from pinwarp.core.folds import Folds
 from pinwarp.core.landmarks import LandmarkState, Position
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.maps import MapKind, Range, Suggestion
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui.scene.model_drawables import ModelElements
@@ -312,10 +313,10 @@ class NextClick:
 
 @dataclass(frozen=True)
 class Star:
-    """Where the next landmark helps most, and the unit of its figure."""
+    """Where the next landmark helps most, and how far from there the truth may be, in words."""
 
     suggestion: Suggestion
-    unit: str
+    deviation: str
 
 
 @dataclass(frozen=True)
@@ -334,6 +335,8 @@ class Legend:
         Whether values lie below and above what is shown.
     fixed
         Whether the user fixed the range.
+    factor
+        What its lengths are multiplied by to be in the unit that is shown.
     """
 
     title: str
@@ -342,6 +345,7 @@ class Legend:
     range: Range
     clipped: tuple[bool, bool] = (False, False)
     fixed: bool = False
+    factor: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -355,9 +359,9 @@ class Caption:
 
 @dataclass(frozen=True)
 class ScaleBar:
-    """A round length, in a unit."""
+    """A round length, as a ruler tells it."""
 
-    unit: str
+    ruler: Ruler
 
 
 @dataclass(frozen=True)

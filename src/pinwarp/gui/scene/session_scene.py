@@ -23,7 +23,7 @@ from pinwarp.gui.scene.drawables import (
 from pinwarp.io.mesh_reference import MeshReference
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session.judging.quality import Quality
-from pinwarp.session.mesh_units import unit_on
+from pinwarp.session.rulers import rulers_of
 from pinwarp.session.session import Session
 from pinwarp.session.view import Selection, ViewState
 from pinwarp.session.warp.pair_names import pair_names
@@ -70,7 +70,7 @@ def session_drawables(
     elif is_empty:
         yield Hint(_EMPTY_HINTS[side])
     if not is_empty:
-        yield ScaleBar(unit_on(session, side))
+        yield ScaleBar(rulers_of(session, view.lengths).on(side))
     if view.section is not None:
         yield Cut(view.section)
     yield Markers(markers, view.marker_radius)

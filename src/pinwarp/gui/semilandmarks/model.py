@@ -9,10 +9,10 @@ from qtpy.QtCore import QAbstractItemModel, QModelIndex, QObject, QSize, Qt, Sig
 from qtpy.QtGui import QColor, QIcon, QPainter, QPixmap
 
 from pinwarp.core.groups import Patch
+from pinwarp.core.lengths import Ruler
 from pinwarp.gui.semilandmarks.shown import Shown, ShownGroup
 from pinwarp.gui.semilandmarks.words import kind_of, state_of
 from pinwarp.gui.style import theme
-from pinwarp.gui.style.lengths import format_length
 
 NAME, KIND, POINTS, FREED, SLIDE, STATE = range(6)
 TITLES = ("Name", "Kind", "Points", "Freed", "Slide", "State")
@@ -41,13 +41,13 @@ class GroupModel(QAbstractItemModel):
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._groups: tuple[ShownGroup, ...] = ()
-        self._unit = ""
+        self._ruler = Ruler()
 
-    def show(self, shown: Shown, unit: str) -> None:
+    def show(self, shown: Shown, ruler: Ruler) -> None:
         """Show other curves and patches, or the same with other figures."""
         before = [(x.group.name, x.group.count) for x in self._groups]
         if before == [(x.group.name, x.group.count) for x in shown.groups]:
-            self._groups, self._unit = shown.groups, unit
+            self._groups, self._ruler = shown.groups, ruler
             if before:
                 last = self.index(len(before) - 1, len(TITLES) - 1)
                 self.dataChanged.emit(self.index(0, 0), last)
@@ -58,7 +58,7 @@ class GroupModel(QAbstractItemModel):
                         self.dataChanged.emit(self.index(0, 0, above), last)
             return
         self.beginResetModel()
-        self._groups, self._unit = shown.groups, unit
+        self._groups, self._ruler = shown.groups, ruler
         self.endResetModel()
 
     def group(self, index: QModelIndex) -> ShownGroup | None:
@@ -177,7 +177,7 @@ class GroupModel(QAbstractItemModel):
             case 3:
                 return f"{one.freed:,}" if one.freed else "–"
             case 4:
-                return "–" if slide is None else format_length(slide, self._unit, 3)
+                return "–" if slide is None else self._ruler.text(slide, 3)
             case _:
                 return state_of(one.group)
 
@@ -188,7 +188,7 @@ class GroupModel(QAbstractItemModel):
         if number in one.group.excluded:
             return "excluded" if column == STATE else ""
         if column == SLIDE and math.isfinite(slid) and not one.is_freed[number]:
-            return format_length(slid, self._unit, 3)
+            return self._ruler.text(slid, 3)
         if column == FREED and one.is_freed[number]:
             return "freed"
         return ""

@@ -25,6 +25,7 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.groups import MOST_POINTS, Curve
+from pinwarp.core.lengths import Ruler
 from pinwarp.gui.semilandmarks.model import NAME, POINTS, GroupModel
 from pinwarp.gui.semilandmarks.shown import Shown
 from pinwarp.gui.semilandmarks.words import freed_words, why_not
@@ -189,7 +190,7 @@ class SemilandmarkPanel(QWidget):
         for widget in (self.slider, self.spin):
             widget.valueChanged.connect(self._on_count)
 
-    def show_groups(self, shown: Shown, unit: str, chosen: str) -> None:
+    def show_groups(self, shown: Shown, ruler: Ruler, chosen: str) -> None:
         """Show curves and patches with their figures, one of them chosen."""
         self._shown = shown
         number = self.model.point(self.tree.currentIndex())
@@ -199,7 +200,7 @@ class SemilandmarkPanel(QWidget):
             if self.tree.isExpanded(self.model.index_of(x.group.name))
         ]
         self._rendering = True
-        self.model.show(shown, unit)
+        self.model.show(shown, ruler)
         for name in opened:
             self.tree.expand(self.model.index_of(name))
         self._choose(chosen, number if chosen == self._chosen else None)

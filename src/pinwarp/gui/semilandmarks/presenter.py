@@ -381,7 +381,7 @@ class Semilandmarks(Capability):
         if self._editor.is_previewing and self.shown.asked.groups:
             # Figures that run are not read: they follow when what moves is dropped.
             return
-        self.panel.show_groups(self.shown, self._editor.session.unit, self._chosen())
+        self.panel.show_groups(self.shown, self._editor.rulers.session, self._chosen())
         self.note.setText(in_short(self.shown))
         self.note.setToolTip(why_not(self.shown))
         for action in self.actions:

@@ -12,8 +12,8 @@ from pinwarp.core.maps import MapKind, Range
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.lengths import round_length
 
-# A legend of ratios that reaches further than so many doublings is written in powers of two.
-POWERS_FROM = 0.9
+# Fewer numbers are no scale: ratios are written in powers of two only where there are as many.
+FEWEST = 3
 # The least that there is between the ends of a scale: of its level, in doublings, as a length.
 LEAST_SHARE = 1e-6
 LEAST_DOUBLINGS = 1e-6
@@ -31,6 +31,8 @@ class ColourScale:
         Lengths run from dark to light; ratios from blue to orange, neutral at 1.
     range
         The lowest and the highest value shown; what lies beyond takes the colour of the end.
+    factor
+        What lengths are multiplied by to be in the unit that is written.
 
     Examples
     --------
@@ -41,6 +43,7 @@ class ColourScale:
 
     kind: MapKind
     range: Range
+    factor: float = 1.0
 
     @property
     def ends(self) -> Range:
@@ -71,16 +74,19 @@ class ColourScale:
     def ticks(self) -> list[Tick]:
         """Return the values to be written beside the colours, the lowest first."""
         low, high = self.ends
-        if self.kind.is_ratio and max(abs(low), abs(high)) > POWERS_FROM:
-            step = max(1, math.ceil((high - low) / 8))
-            powers = range(math.ceil(low - 1e-6), math.floor(high + 1e-6) + 1)
-            found = [(float(power), _power_text(power)) for power in powers if power % step == 0]
-        else:
-            ratios = self.kind.is_ratio
-            values = _round_values(*((2.0**low, 2.0**high) if ratios else (low, high)))
-            levels = self.kind.levels(np.array(values)).tolist()
-            found = list(zip(levels, [f"{value:.6g}" for value in values], strict=True))
+        found = self._powers(low, high) if self.kind.is_ratio else []
+        if len(found) < FEWEST:
+            factor = 1.0 if self.kind.is_ratio else self.factor
+            ends = (2.0**low, 2.0**high) if self.kind.is_ratio else (factor * low, factor * high)
+            values = _round_values(*ends)
+            levels = self.kind.levels(np.array(values) / factor).tolist()
+            found = list(zip(levels, _as_short_as_differs(values), strict=True))
         return [Tick((level - low) / (high - low), text) for level, text in found]
+
+    def _powers(self, low: float, high: float) -> list[tuple[float, str]]:
+        step = max(1, math.ceil((high - low) / 8))
+        powers = range(math.ceil(low - 1e-6), math.floor(high + 1e-6) + 1)
+        return [(float(power), _power_text(power)) for power in powers if power % step == 0]
 
 
 @dataclass(frozen=True)
@@ -95,6 +101,15 @@ def _power_text(power: int) -> str:
     if power >= 0:
         return f"{2**power}"
     return _FRACTIONS.get(power, f"1/{2**-power}")
+
+
+def _as_short_as_differs(values: list[float]) -> list[str]:
+    """Return numbers in six digits, or in as many more as it takes to tell them apart."""
+    for digits in range(6, 17):
+        texts = [f"{value:.{digits}g}" for value in values]
+        if len(set(texts)) == len(texts):
+            break
+    return texts
 
 
 def _round_values(low: float, high: float) -> list[float]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-# From here on a number is written with a power of ten.
-_LARGEST = 1e6
+from pinwarp.core.lengths import Ruler
+
 # Nobody places landmarks closer to a bone than this share of its size.
 _ON_MESH = 1e-4
 
@@ -30,32 +30,6 @@ def round_length(longest: float) -> float:
     return max(length for length in lengths if length <= longest)
 
 
-def format_number(value: float, digits: int = 3) -> str:
-    """Return a number with some significant digits, and never less than its whole part.
-
-    Examples
-    --------
-    >>> format_number(2.40047), format_number(1473.2), format_number(0.0)
-    ('2.4', '1473', '0')
-    """
-    if 10**digits <= abs(value) < _LARGEST:
-        return f"{value:.0f}"
-    return f"{value:.{digits}g}"
-
-
-def format_length(value: float, unit: str, digits: int = 4) -> str:
-    """Return a length with a sensible number of digits and its unit.
-
-    Examples
-    --------
-    >>> format_length(2.40047, "mm"), format_length(float("inf"), "mm")
-    ('2.4 mm', 'affine')
-    """
-    if math.isinf(value):
-        return "affine"
-    return f"{format_number(value, digits)} {unit}".rstrip()
-
-
 def distance_from_mesh(distance: float, size: float, unit: str) -> str:
     """Return how far something lies from a mesh of some size, in words.
 
@@ -66,7 +40,7 @@ def distance_from_mesh(distance: float, size: float, unit: str) -> str:
     """
     if distance <= _ON_MESH * size:
         return "on the mesh"
-    return f"{format_length(distance, unit, 3)} from the mesh"
+    return f"{Ruler(unit).text(distance, 3)} from the mesh"
 
 
 def ticks(largest: float) -> tuple[float, ...]:

@@ -19,7 +19,6 @@ from pinwarp.gui.drawn.surfaces import Surfaces
 from pinwarp.gui.placing.ghosts import Ghosts
 from pinwarp.gui.placing.guidance import Guidance
 from pinwarp.gui.placing.hand import Hand
-from pinwarp.gui.style.lengths import format_length
 from pinwarp.gui.suggesting import words
 from pinwarp.gui.suggesting.asking import Asking
 from pinwarp.gui.suggesting.bar import SuggestBar
@@ -31,7 +30,6 @@ from pinwarp.gui.views.controls import ViewControls
 from pinwarp.gui.views.scenes import Scenes
 from pinwarp.session.editor import Editor
 from pinwarp.session.guide import step_at
-from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.session import Session
 from pinwarp.session.suggesting import mirrored_first, why_not
 
@@ -286,7 +284,7 @@ class Suggesting(Capability):
             self.bar.show_problem(text, may_be_part=not settings.partial)
         elif self.expected.ghosts():
             step = step_at(session, None)
-            self.bar.show_going(self._going(session), step.complete, step.total)
+            self.bar.show_going(self._going(), step.complete, step.total)
         elif offered:
             self.bar.show_offer(words.offer_in_words(offered, self.action.keys))
         elif not self.first.is_wanted:
@@ -296,12 +294,12 @@ class Suggesting(Capability):
         self._guidance.show()
         self.action.renew()
 
-    def _going(self, session: Session) -> str:
+    def _going(self) -> str:
         ghost = self._ghosts.at(Side.DESTINATION)
         if ghost is None or ghost.deviation is None:
             # The guide asks for one that has no ghost.
             return ""
-        radius = format_length(ghost.deviation, unit_on(session, Side.DESTINATION), 2)
+        radius = self._editor.rulers.destination.text(ghost.deviation, 2)
         return words.going_in_words(ghost.name, radius, self._hand.accept_action.keys)
 
     def _tell(self) -> None:

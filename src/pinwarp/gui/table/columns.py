@@ -23,6 +23,7 @@ from pinwarp.session import edits
 from pinwarp.session.coordinates import position_text, typed_position
 from pinwarp.session.judging.quality import NamedFinding
 from pinwarp.session.naming import natural
+from pinwarp.session.rulers import Rulers
 from pinwarp.session.session import Session
 from pinwarp.session.warp.solver import is_rounding
 
@@ -31,14 +32,13 @@ from pinwarp.session.warp.solver import is_rounding
 class Row:
     """A landmark, the numbers found for it by the key of their column, and what was noticed.
 
-    ``unit`` is the session's, ``units`` what is right for coordinates on either side.
+    ``rulers`` say how lengths are shown.
     """
 
     landmark: Landmark
     values: Mapping[str, float]
     findings: Sequence[NamedFinding] = ()
-    unit: str = ""
-    units: Mapping[Side, str] = field(default_factory=dict)
+    rulers: Rulers = field(default_factory=Rulers)
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,8 @@ class Column:
     icon, checked
         A picture, and a tick, in front of the text.
     edit
-        Session, name and typed text to a session; raises a LandmarkError with the reason.
+        Session, name, typed text and the rulers it is typed by to a session; raises a
+        LandmarkError with the reason.
     edit_text, can_edit, label
         What editing begins with, whether it may, and what Undo calls it.
     side
@@ -89,7 +90,7 @@ class Column:
     cell_tip: Callable[[Row], str] | None = None
     icon: Callable[[Row], QIcon | None] | None = None
     checked: Callable[[Row], bool | None] | None = None
-    edit: Callable[[Session, str, str], Session] | None = None
+    edit: Callable[[Session, str, str, Rulers], Session] | None = None
     edit_text: Callable[[Row], str] | None = None
     can_edit: Callable[[Row], bool] = lambda _row: True
     label: str = "Edit {}"
@@ -107,7 +108,7 @@ def number_column(
     key: str,
     title: str,
     tip: str,
-    text: Callable[[float, Landmark], str] | None = None,
+    text: Callable[[float, Row], str] | None = None,
     **more: Any,
 ) -> Column:
     """Return a column of numbers that the model was shown under its key.
@@ -132,7 +133,7 @@ def number_column(
         value = row.values.get(key)
         if value is None or not math.isfinite(value):
             return ""
-        return f"{value:.3g}" if text is None else text(value, row.landmark)
+        return f"{value:.3g}" if text is None else text(value, row)
 
     return Column(
         key=key,
@@ -183,14 +184,16 @@ def _placed_tip(side: Side) -> Callable[[Row], str]:
     def tip(row: Row) -> str:
         if _placed(side)(row) == "→":
             return "A passenger: the warp carries it over."
-        return position_text(row.landmark.position(side), row.units.get(side, ""))
+        return position_text(row.landmark.position(side), row.rulers.on(side))
 
     return tip
 
 
-def _length_text(length: float, landmark: Landmark) -> str:
-    place = landmark.destination
-    return "0" if place is not None and is_rounding(length, place) else f"{length:.3g}"
+def _length_text(length: float, row: Row) -> str:
+    place = row.landmark.destination
+    if place is not None and is_rounding(length, place):
+        return "0"
+    return row.rulers.destination.number(length, 3)
 
 
 def _left_out_tip(row: Row) -> str:
@@ -199,7 +202,7 @@ def _left_out_tip(row: Row) -> str:
     missed, times = row.values.get("left_out"), row.values.get("standardised")
     if missed is None or times is None or not math.isfinite(missed):
         return ""
-    length = f"{missed:.3g} {row.unit}".rstrip()
+    length = row.rulers.destination.text(missed, 3)
     return (
         f"{row.landmark.name} lies {length} from where the other pairs expect it, "
         f"{times:.1f} times what is usual for its surroundings."
@@ -240,20 +243,25 @@ def _coordinate_column(side: Side, short: str, axis: int) -> Column:
         position = row.landmark.position(side)
         return None if position is None else position[axis]
 
-    def edit(session: Session, name: str, text: str) -> Session:
+    def shown(row: Row) -> float | None:
+        number = value(row)
+        return None if number is None else row.rulers.on(side).factor * number
+
+    def edit(session: Session, name: str, text: str, rulers: Rulers) -> Session:
         landmark = session.landmark(name)
         if landmark is None:
             raise LandmarkError(f"There is no landmark called {name}.")
-        return edits.move(session, name, side, typed_position(landmark, side, axis, text))
+        place = typed_position(landmark, side, axis, text, rulers.on(side))
+        return edits.move(session, name, side, place)
 
     return Column(
         key=f"{side.value}_{letter}",
         title=f"{short} {letter}",
         tip=f"{letter} on the {side.value} mesh: double-click to type it, or all three (1 2 3)",
-        text=lambda row: "" if (number := value(row)) is None else f"{number:.6g}",
+        text=lambda row: "" if (number := shown(row)) is None else f"{number:.6g}",
         sort_key=value,
         edit=edit,
-        edit_text=lambda row: "" if (number := value(row)) is None else repr(number),
+        edit_text=lambda row: "" if (number := shown(row)) is None else repr(number),
         can_edit=lambda row: not row.landmark.locked,
         label="Move {}",
         side=side,
@@ -276,7 +284,7 @@ COLUMNS: tuple[Column, ...] = (
         cell_tip=_name_tip,
         icon=lambda row: state_icon(row.landmark.state),
         checked=_tick,
-        edit=edits.rename,
+        edit=lambda session, name, text, _rulers: edits.rename(session, name, text),
         edit_text=lambda row: row.landmark.name,
         label="Rename {}",
     ),

@@ -18,7 +18,7 @@ from pinwarp.gui.style import theme
 from pinwarp.gui.style.icons import icon
 from pinwarp.gui.table.columns import COLUMNS, NAME, Column, Row, column_number
 from pinwarp.session.judging.quality import NamedFinding, Quality
-from pinwarp.session.mesh_units import unit_on
+from pinwarp.session.rulers import Rulers
 from pinwarp.session.session import Session
 from pinwarp.session.warp.pair_names import pair_names
 from pinwarp.session.warp.result import WarpInputs, WarpResult
@@ -47,8 +47,7 @@ class LandmarkModel(QAbstractTableModel):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._session = Session()
-        # Coordinates may be in another unit than the session's, or in an unknown one.
-        self._units = dict.fromkeys(Side, self._session.unit)
+        self.rulers = Rulers()
         self._landmarks: list[Landmark] = []
         self._values: dict[str, dict[str, float]] = {}
         self._largest: dict[str, float] = {}
@@ -69,7 +68,7 @@ class LandmarkModel(QAbstractTableModel):
         landmark = self._landmarks[number]
         name = landmark.name
         found = {key: values[name] for key, values in self._values.items() if name in values}
-        return Row(landmark, found, self._findings.get(name, ()), self._session.unit, self._units)
+        return Row(landmark, found, self._findings.get(name, ()), self.rulers)
 
     def sort_keys(self, column: int) -> Sequence[Any]:
         """Return what the rows are sorted by in a column."""
@@ -82,7 +81,6 @@ class LandmarkModel(QAbstractTableModel):
 
     def show_session(self, session: Session) -> None:
         """Show the landmarks of a session: selection and scroll position outlast it."""
-        self._show_units(session)
         self._session = session
         # While rows come and go the views' selections are in between: nobody should act on them.
         self.is_updating = True
@@ -96,11 +94,12 @@ class LandmarkModel(QAbstractTableModel):
             self._show_figures(key)
         self.is_updating = False
 
-    def _show_units(self, session: Session) -> None:
-        units = {side: unit_on(session, side) for side in Side}
-        if (session.unit, units) != (self._session.unit, self._units):
-            self._session, self._units = session, units
-            self.headerDataChanged.emit(Qt.Orientation.Horizontal, 0, len(COLUMNS) - 1)
+    def show_rulers(self, rulers: Rulers) -> None:
+        """Show all lengths in another unit."""
+        self.rulers = rulers
+        self._sort_keys.clear()
+        self.headerDataChanged.emit(Qt.Orientation.Horizontal, 0, len(COLUMNS) - 1)
+        self._announce(range(len(self._landmarks)), 0, len(COLUMNS) - 1)
 
     def _are_renamed(self, new: Sequence[Landmark]) -> bool:
         """Whether rows only changed: the same ones, some perhaps under a name not used before."""
@@ -249,7 +248,7 @@ class LandmarkModel(QAbstractTableModel):
         if not shown.is_length:
             return title
         # What the warp misses is measured on the destination.
-        unit = self._units[shown.side or Side.DESTINATION]
+        unit = self.rulers.on(shown.side or Side.DESTINATION).unit
         return f"{title}\n{unit}" if unit else title
 
     def headerData(self, section: int, orientation: Qt.Orientation, role: int = 0) -> Any:
@@ -329,7 +328,7 @@ class LandmarkModel(QAbstractTableModel):
         edit = COLUMNS[index.column()].edit
         if edit is not None and text != self.data(index, Qt.ItemDataRole.EditRole):
             try:
-                edit(self._session, self._landmarks[index.row()].name, text)
+                edit(self._session, self._landmarks[index.row()].name, text, self.rulers)
             except PinwarpError as error:
                 return str(error)
         return ""

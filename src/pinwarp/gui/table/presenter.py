@@ -73,6 +73,7 @@ class TablePresenter(Capability):
             *self._of_rows(),
         )
         self._connect()
+        self.model.show_rulers(editor.rulers)
         self.model.show_session(editor.session)
         self._on_change()
 
@@ -86,6 +87,7 @@ class TablePresenter(Capability):
         table.selection_requested.connect(
             lambda names, side: editor.select(*names, side=Side(side) if side else None)
         )
+        editor.rulers_changed.connect(model.show_rulers)
         editor.session_changed.connect(model.show_session)
         editor.session_changed.connect(self._on_change)
         editor.selection_changed.connect(self._on_change)
@@ -218,6 +220,7 @@ class TablePresenter(Capability):
 
     def shut_down(self) -> None:
         """Let go of the editor."""
+        self._editor.rulers_changed.disconnect(self.model.show_rulers)
         self._editor.session_changed.disconnect(self.model.show_session)
         self._editor.session_changed.disconnect(self._on_change)
         self._editor.selection_changed.disconnect(self._on_change)
@@ -296,7 +299,9 @@ class TablePresenter(Capability):
         if COLUMNS[column].side is not None and self._editor.view.locked:
             self._say(self._hand.all_locked)
         elif edit is not None:
-            self._commit_renamed(lambda session: edit(session, name, text), label.format(name))
+            self._commit_renamed(
+                lambda session: edit(session, name, text, self._editor.rulers), label.format(name)
+            )
 
     def _commit_renamed(self, edit: Callable[[Session], Session], label: str) -> None:
         """Commit an edit that may change names; what was selected stays selected."""

@@ -14,7 +14,7 @@ from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.style import theme
 from pinwarp.gui.views.canvas import Canvas
 from pinwarp.session.editor import Editor
-from pinwarp.session.view import Background
+from pinwarp.session.view import Background, LengthUnit
 
 # Smallest and largest landmark, in logical pixels.
 MARKER_RADII = (4.0, 12.0)
@@ -22,6 +22,14 @@ _BACKGROUNDS = {
     Background.THEME: ("As the &Theme", "Light or dark, as the window is", 11),
     Background.LIGHT: ("&Light", "Whatever the window is", 12),
     Background.DARK: ("&Dark", "Whatever the window is", 13),
+}
+
+_LENGTHS = {
+    LengthUnit.AUTOMATIC: ("&Automatic", "Bones in metres are shown in millimetres", 11),
+    LengthUnit.FILE: ("As in the &File", "In the unit of the session", 12),
+    LengthUnit.MM: ("&Millimetres", "Files keep their unit", 21),
+    LengthUnit.CM: ("&Centimetres", "Files keep their unit", 22),
+    LengthUnit.M: ("M&etres", "Files keep their unit", 23),
 }
 
 
@@ -75,6 +83,7 @@ class Looks(Capability):
             ),
             tool(self.section_slider, "tools.46"),
             *one_of(map(self._background_action, Background), parent),
+            *one_of(map(self._lengths_action, LengthUnit), parent),
             Action(
                 "wireframe",
                 "W&ireframe Bones",
@@ -120,12 +129,27 @@ class Looks(Capability):
             tip=tip,
         )
 
+    def _lengths_action(self, unit: LengthUnit) -> Action:
+        text, tip, place = _LENGTHS[unit]
+        return Action(
+            f"lengths_{unit.name.lower()}",
+            text,
+            lambda: self._editor.look(lengths=unit),
+            checked=lambda: self._editor.view.lengths is unit,
+            at=f"lengths.{place}",
+            tip=tip,
+        )
+
     def remember(self, settings: QSettings) -> None:
-        """Note the background."""
+        """Note the background and the unit of lengths."""
+        settings.setValue("views/lengths", self._editor.view.lengths.value)
         settings.setValue("views/background", self._editor.view.background.value)
 
     def recall(self, settings: QSettings) -> None:
-        """Take the background that was chosen before."""
+        """Take the background and the unit that were chosen before."""
+        unit = str(settings.value("views/lengths", LengthUnit.AUTOMATIC.value))
+        if unit in set(LengthUnit):
+            self._editor.look(lengths=LengthUnit(unit))
         stored = str(settings.value("views/background", Background.THEME.value))
         if stored in set(Background):
             self._editor.look(background=Background(stored))

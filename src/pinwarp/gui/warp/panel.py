@@ -17,6 +17,7 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.components import Components
+from pinwarp.core.lengths import Ruler
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.style import theme
 from pinwarp.gui.warp.component_list import ComponentList, Remainder
@@ -60,6 +61,7 @@ class WarpPanel(QScrollArea):
     def __init__(self, play: Action, grid_key: str) -> None:
         super().__init__()
         self.setAccessibleName("Parts of the warp")
+        self._ruler = Ruler()
         self._session = Session()
         self._quality: Quality | None = None
         self.components = ComponentList()
@@ -157,7 +159,6 @@ class WarpPanel(QScrollArea):
 
     def show_session(self, session: Session) -> None:
         """Show what a session applies."""
-        unit_changed = session.unit != self._session.unit
         self._session = session
         settings = session.settings
         is_rigid = settings.components is Components.RIGID
@@ -170,13 +171,15 @@ class WarpPanel(QScrollArea):
         self.ends[1].setText(words.title + same)
         if not self.blend.isSliderDown():
             _place(self.blend, round(100 * settings.blend))
-        if unit_changed:
-            self.show_quality(self._quality)
+
+    def show_ruler(self, ruler: Ruler) -> None:
+        """Show all lengths in another unit."""
+        self._ruler = ruler
+        self.show_quality(self._quality)
 
     def show_quality(self, quality: Quality | None) -> None:
         """Show what the warp does; None where there is none."""
         self._quality = quality
-        unit = self._session.unit
         refined = quality is not None and quality.inputs.refinement is not None
         apart = REFINED_APART if refined else TAKEN_APART
         self.sentence.setText(determined_in_words(quality) or apart)
@@ -191,11 +194,11 @@ class WarpPanel(QScrollArea):
         self.components.show_remainders(
             {
                 # What is only rounding has no bar.
-                part: Remainder(rms_text(rms, quality, unit), round(rms / largest, 3))
+                part: Remainder(rms_text(rms, quality, self._ruler), round(rms / largest, 3))
                 for part, rms in left.items()
             }
         )
-        self.figures.show_rows(warp_figures(quality, unit))
+        self.figures.show_rows(warp_figures(quality, self._ruler))
 
     def show_view(self, view: ViewState) -> None:
         """Show which grid is drawn."""

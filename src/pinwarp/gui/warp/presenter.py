@@ -18,6 +18,7 @@ from pinwarp.gui.warp.quality import QualityPresenter
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.warp_figures import figures_table
+from pinwarp.session.rulers import Rulers
 from pinwarp.session.warp.component_words import applied_in_words
 
 COMPONENT_ACTIONS = {part: f"apply_{part.name.lower()}" for part in Components}
@@ -98,6 +99,7 @@ class WarpPresenter(Capability):
         panel.grid_share_requested.connect(lambda share: editor.look(grid_share=share))
         panel.copy_requested.connect(self._copy)
         self.player.playing_changed.connect(self._on_playing)
+        editor.rulers_changed.connect(self._on_rulers)
         editor.session_changed.connect(self._on_session)
         editor.view_changed.connect(self._on_view)
         self._quality.quality_changed.connect(self._on_quality)
@@ -105,6 +107,7 @@ class WarpPresenter(Capability):
     def shut_down(self) -> None:
         """Let go of the editor."""
         self.player.shut_down()
+        self._editor.rulers_changed.disconnect(self._on_rulers)
         self._editor.session_changed.disconnect(self._on_session)
         self._editor.view_changed.disconnect(self._on_view)
         self._quality.quality_changed.disconnect(self._on_quality)
@@ -121,6 +124,9 @@ class WarpPresenter(Capability):
         else:
             applied = applied_in_words(session.settings)
             self.note.setText("" if whole else f"Shown and exported: {applied}")
+
+    def _on_rulers(self, rulers: Rulers) -> None:
+        self.panel.show_ruler(rulers.session)
 
     def _on_view(self, _changed: object = None) -> None:
         self.panel.show_view(self._editor.view)

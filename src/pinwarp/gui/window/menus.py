@@ -21,6 +21,7 @@ INNER = {
     "grid": ("&Grid", "View.14"),
     "background": ("&Background", "View.33"),
     "text_size": ("&Text Size", "View.34"),
+    "lengths": ("&Lengths", "View.35"),
     "sides": ("&Look From", "View.23"),
     "cameras": ("Ca&meras", "View.24"),
 }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from pinwarp.core.errors import RangeError
@@ -13,7 +13,7 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.session.importing.fit import Fit, fits_of
 from pinwarp.session.judging.quality import NamedFinding
-from pinwarp.session.mesh_units import unit_on
+from pinwarp.session.rulers import Rulers, rulers_of
 from pinwarp.session.session import Session
 
 
@@ -31,6 +31,17 @@ class Elsewhere(NamedFinding):
 
     side: Side
     fit: Fit
+
+    def by(self, rulers: Rulers) -> Elsewhere:
+        """Return the same, its lengths told by other rulers."""
+        ruler, words = rulers.on(self.side), self.fit.describe()
+        stored, read = (ruler.text(x, 3) for x in (self.finding.value, self.finding.others[0]))
+        sentence = (
+            f"The {self.side.value} landmarks lie {stored} from their mesh in the "
+            f"median, but {read} {words[0].lower()}{words[1:]}: they are in "
+            "another frame or unit."
+        )
+        return replace(self, sentence=sentence)
 
 
 def elsewhere(
@@ -71,15 +82,9 @@ def elsewhere(
         if not others:
             continue
         fit = others[0]
-        unit = unit_on(session, side)
-        words = fit.describe()
-        sentence = (
-            f"The {side.value} landmarks lie {stored.distance:.3g} {unit} from their mesh in the "
-            f"median, but {fit.distance:.3g} {unit} {words[0].lower()}{words[1:]}: they are in "
-            "another frame or unit."
-        )
         finding = Finding(FindingKind.ELSEWHERE, (), stored.distance, (fit.distance,))
-        found.append(Elsewhere(finding, (), sentence, side, fit))
+        told = Elsewhere(finding, (), "", side, fit)
+        found.append(told.by(rulers_of(session)))
     return tuple(found)
 
 

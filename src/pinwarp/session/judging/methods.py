@@ -9,10 +9,12 @@ import numpy as np
 import scipy
 
 from pinwarp.core.landmarks import Side
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.spline import PenaltyConvention
 from pinwarp.core.words import counted
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session.judging.quality import Quality
+from pinwarp.session.rulers import rulers_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.provenance import session_hash
 from pinwarp.session.warp.refined import refinement_in_use, warp_in_words
@@ -76,7 +78,7 @@ def methods_of(warp: SolvedWarp, quality: Quality) -> tuple[str, ...]:
         _penalty(session),
         *_further(warp),
         *_applied(session),
-        *_errors(quality, session.unit),
+        *_errors(quality, rulers_of(session).session),
         f"This was done with pinwarp {__version__} (Python {platform.python_version()}, numpy "
         f"{np.__version__}, scipy {scipy.__version__}; session {session_hash(session)}).",
     ]
@@ -121,7 +123,7 @@ def _further(warp: SolvedWarp) -> list[str]:
         found.append(
             f"The warp was then refined to the destination's surface by "
             f"{counted(warp.fitted or 0, 'place')}, features larger than "
-            f"{refined.smallest_feature:.4g} {session.unit} first."
+            f"{rulers_of(session).session.text(refined.smallest_feature)} first."
         )
     return found
 
@@ -130,13 +132,14 @@ def _applied(session: Session) -> list[str]:
     return [] if session.settings.is_whole else [f"Of it was applied: {warp_in_words(session)}."]
 
 
-def _errors(quality: Quality, unit: str) -> list[str]:
+def _errors(quality: Quality, ruler: Ruler) -> list[str]:
     left_out = quality.left_out
     if left_out is None or not np.isfinite(left_out.rms):
         return []
     # Pairs that alone fix a direction of the affine part have none.
     distances = left_out.distances[np.isfinite(left_out.distances)]
     return [
-        f"The leave-one-out error of the landmarks was {left_out.rms:.3g} {unit} (RMS; median "
-        f"{float(np.median(distances)):.3g}, largest {float(distances.max()):.3g} {unit})."
+        f"The leave-one-out error of the landmarks was {ruler.text(left_out.rms, 3)} (RMS; median "
+        f"{ruler.number(float(np.median(distances)), 3)}, "
+        f"largest {ruler.text(float(distances.max()), 3)})."
     ]

@@ -16,7 +16,7 @@ from pinwarp.core.factor import SourceFactor
 from pinwarp.core.findings import Finding, FindingKind, Severity, gravest_first
 from pinwarp.core.isolation import isolated
 from pinwarp.core.landmarks import Position
-from pinwarp.core.lengths import rms
+from pinwarp.core.lengths import Ruler, rms
 from pinwarp.core.mirror import MIRRORED, reflection_misfit
 from pinwarp.core.quality import (
     LeaveOneOut,
@@ -28,6 +28,7 @@ from pinwarp.core.quality import (
 from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import Spline, solve
 from pinwarp.core.suspects import suspects
+from pinwarp.session.rulers import rulers_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.pair_names import pair_names
 from pinwarp.session.warp.result import WarpInputs, WarpResult
@@ -115,13 +116,15 @@ class Quality:
             return self
         return replace(self, judgement=before.judgement)
 
-    def findings_in(self, session: Session) -> tuple[NamedFinding, ...]:
+    def findings_in(self, session: Session, ruler: Ruler | None = None) -> tuple[NamedFinding, ...]:
         """Return the findings by name, as far as their pairs are still there.
 
         Parameters
         ----------
         session
             The session as it is now, which may have moved on since the pairs were judged.
+        ruler
+            How lengths are told; without it as in the files.
 
         Examples
         --------
@@ -134,7 +137,7 @@ class Quality:
         >>> judged.findings_in(session)[0].sentence
         'a and b lie at the same place on the source but 2 mm apart on the destination.'
         """
-        return named_findings(self.findings, self.inputs, session)
+        return named_findings(self.findings, self.inputs, session, ruler)
 
 
 def judged_at(settings: WarpSettings, unit: str = "") -> str:
@@ -154,7 +157,10 @@ def judged_at(settings: WarpSettings, unit: str = "") -> str:
 
 
 def named_findings(
-    findings: Iterable[Finding], inputs: WarpInputs, session: Session
+    findings: Iterable[Finding],
+    inputs: WarpInputs,
+    session: Session,
+    ruler: Ruler | None = None,
 ) -> tuple[NamedFinding, ...]:
     """Return findings by name, as far as their pairs are still there.
 
@@ -181,7 +187,7 @@ def named_findings(
     for finding in findings:
         concerned = tuple(name for row in finding.rows if (name := names[row]) is not None)
         if len(concerned) == len(finding.rows):
-            sentence = finding.describe(words, session.unit)
+            sentence = finding.describe(words, ruler or rulers_of(session).session)
             named.append(NamedFinding(finding, concerned, sentence))
     return tuple(named)
 
@@ -274,7 +280,7 @@ def _rms_by_components(result: WarpResult, spline: Spline, fit: Spline) -> dict[
     return {part: left[as_drawn(part)] for part in Components}
 
 
-def penalty_advice(curve: PenaltyCurve, unit: str = "") -> str:
+def penalty_advice(curve: PenaltyCurve, unit: Ruler | str = "") -> str:
     """Say how much a suggested penalty matters, or why a curve suggests none.
 
     Parameters
@@ -282,7 +288,7 @@ def penalty_advice(curve: PenaltyCurve, unit: str = "") -> str:
     curve
         The figures over the penalty.
     unit
-        Of the penalties.
+        Of the penalties, or how lengths are told.
 
     Returns
     -------
@@ -300,7 +306,7 @@ def penalty_advice(curve: PenaltyCurve, unit: str = "") -> str:
         return "An affine map meets every pair: the penalty changes nothing."
     first, last = curve.leave_one_out[[0, -1]].tolist()
     if curve.as_good is not None:
-        return _as_good_in_words(*curve.as_good, unit)
+        return _as_good_in_words(*curve.as_good, Ruler.of(unit))
     if not (np.isfinite(first) and np.isfinite(last)):
         return ""
     if first <= last:
@@ -308,8 +314,8 @@ def penalty_advice(curve: PenaltyCurve, unit: str = "") -> str:
     return "The least leave-one-out error is at the affine fit: the pairs ask for no bending."
 
 
-def _as_good_in_words(low: float, high: float, unit: str) -> str:
-    start, end = (f"{figure:.2g} {unit}".rstrip() for figure in (low, high))
+def _as_good_in_words(low: float, high: float, ruler: Ruler) -> str:
+    start, end = (ruler.text(figure, 2) for figure in (low, high))
     match low > 0, math.isfinite(high):
         case True, True:
             return f"Anything from {start} to {end} does as well as the suggested penalty."

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import platform
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from datetime import datetime
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from pinwarp.core.findings import gravest_first
 from pinwarp.core.folds import Folds
 from pinwarp.core.landmarks import Side
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.model_rows import ElementRow, counts
 from pinwarp.core.quality import PenaltyCurve
 from pinwarp.core.surface_distance import SurfaceComparison
@@ -24,6 +26,7 @@ from pinwarp.session.judging.elsewhere import elsewhere
 from pinwarp.session.judging.methods import methods_of
 from pinwarp.session.judging.quality import Quality, judged_at, penalty_advice, quality_of
 from pinwarp.session.judging.suggested import about_suggested
+from pinwarp.session.rulers import rulers_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.provenance import session_hash
 from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date, refinement_in_use
@@ -85,7 +88,7 @@ def report_of(
         quality = quality_of(result)
     assert quality is not None, "what is solved can be judged"
     names = [pair.name for pair in session.pairs]
-    unit = session.unit
+    unit, ruler = session.unit, rulers_of(session).session
     also = "" if result.semilandmarks is None else " and semilandmarks"
     told(0.3, "measuring distances")
     folds, compared = warp.folds, warp.comparison
@@ -102,15 +105,19 @@ def report_of(
         methods=methods_of(warp, quality),
         findings=(
             *(one.sentence for one in astray),
-            *(finding.describe(names, unit) for finding in found),
+            *(finding.describe(names, ruler) for finding in found),
             *(f"{row.path}: {row.flag}" for row in elements if row.flag),
         ),
-        figures=(
-            *_of_pairs(warp, quality),
-            *_of_groups(result, unit),
-            *_of_surfaces(compared, folds, unit),
-            *_of_warp(quality, unit),
-            *_of_model(elements),
+        figures=tuple(
+            # What is only rounding is 0.
+            replace(row, value=ruler.shown(row.value)) if row.unit == unit else row
+            for row in (
+                *_of_pairs(warp, quality),
+                *_of_groups(result, unit),
+                *_of_surfaces(compared, folds, unit),
+                *_of_warp(quality, unit),
+                *_of_model(elements),
+            )
         ),
         remarks=(
             ("To check", judged_at(session.settings, unit)),
@@ -146,7 +153,7 @@ def report_of(
 
 
 def _facts(session: Session, result: WarpResult) -> tuple[tuple[str, str], ...]:
-    unit = session.unit
+    unit, ruler = session.unit, rulers_of(session).session
     facts = [(f"{side.value.capitalize()} mesh", _mesh_text(session, side)) for side in Side]
     facts += [
         ("Pairs", _pairs_text(session)),
@@ -155,7 +162,7 @@ def _facts(session: Session, result: WarpResult) -> tuple[tuple[str, str], ...]:
         *settings_in_words(session.settings, unit),
     ]
     if (refined := refinement_in_use(session)) is not None:
-        facts.append(("Refined", _fitted_text(refined, len(session.pairs), unit)))
+        facts.append(("Refined", _fitted_text(refined, len(session.pairs), ruler)))
     elif is_out_of_date(session):
         facts.append(("Refined", OUT_OF_DATE))
     if words := semilandmarks_in_words(result):
@@ -164,7 +171,7 @@ def _facts(session: Session, result: WarpResult) -> tuple[tuple[str, str], ...]:
     if result.flexibility is not None:
         facts.append(("Flexibility", f"{result.flexibility:.0%}"))
     if result.rms_residual is not None:
-        facts.append(("RMS residual", f"{result.rms_residual:.4g} {unit}"))
+        facts.append(("RMS residual", ruler.text(result.rms_residual)))
     return tuple(facts)
 
 
@@ -191,15 +198,15 @@ def _pairs_text(session: Session) -> str:
     return f"{len(session.pairs)} of {len(session.landmarks)} landmarks{only}"
 
 
-def _fitted_text(refined: RefinementRecord, pairs: int, unit: str) -> str:
+def _fitted_text(refined: RefinementRecord, pairs: int, ruler: Ruler) -> str:
     met = (
         "every landmark met"
         if refined.landmark_tolerance == 0
-        else f"landmarks with a penalty of {refined.landmark_tolerance:.4g} {unit}"
+        else f"landmarks with a penalty of {ruler.text(refined.landmark_tolerance)}"
     )
     return (
         f"{len(refined.source) - pairs:,} of {refined.places:,} places fitted to the destination, "
-        f"features larger than {refined.smallest_feature:.4g} {unit} bent, {met}"
+        f"features larger than {ruler.text(refined.smallest_feature)} bent, {met}"
     )
 
 
@@ -299,7 +306,7 @@ def _chart(curve: PenaltyCurve, session: Session, result: WarpResult) -> str:
     marks = []
     if curve.suggested is not None:
         at = float(np.interp(curve.suggested, curve.penalties, stiff))
-        words = f"suggested: {curve.suggested:.4g} {session.unit}"
+        words = f"suggested: {rulers_of(session).session.text(curve.suggested)}"
         marks.append(Mark(at, words, SUGGESTED_COLOUR))
     elif result.flexibility is not None:
         marks.append(Mark(100 * (1 - result.flexibility), "this warp"))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinwarp.core.components import Components
-from pinwarp.core.lengths import rounding_among
+from pinwarp.core.lengths import Ruler, rounding_among
 from pinwarp.io.csv_cells import numeral
 from pinwarp.io.csv_text import csv_line
 from pinwarp.session.judging.quality import LEAST_PAIRS, Quality
@@ -73,7 +73,7 @@ def determined_in_words(quality: Quality | None) -> str:
     return ""
 
 
-def warp_figures(quality: Quality, unit: str) -> tuple[FigureRow, ...]:
+def warp_figures(quality: Quality, unit: Ruler | str) -> tuple[FigureRow, ...]:
     """Return the affine fit and the bending of a warp as figures with their units.
 
     Parameters
@@ -81,7 +81,7 @@ def warp_figures(quality: Quality, unit: str) -> tuple[FigureRow, ...]:
     quality
         Of the warp.
     unit
-        The unit of the meshes.
+        The unit of the meshes, or how lengths are told.
 
     Returns
     -------
@@ -105,7 +105,7 @@ def warp_figures(quality: Quality, unit: str) -> tuple[FigureRow, ...]:
     >>> [figure.text for figure in warp_figures(judged, "mm")[3].figures]
     ['200.0%', '100.0%', '100.0%']
     """
-    parts, noise = quality.affine, _noise(quality)
+    parts, noise, ruler = quality.affine, _noise(quality), Ruler.of(unit)
     length = float(np.linalg.norm(parts.translation))
     axis = [
         Figure(name, at, "", _plain(at, 3))
@@ -115,7 +115,7 @@ def warp_figures(quality: Quality, unit: str) -> tuple[FigureRow, ...]:
     return (
         FigureRow(
             "Translation",
-            _figures([*"xyz", "length"], [*parts.translation, length], unit, noise),
+            _figures([*"xyz", "length"], [*parts.translation, length], ruler, noise),
             "How far the middle of the source landmarks moves",
         ),
         FigureRow(
@@ -146,17 +146,19 @@ def warp_figures(quality: Quality, unit: str) -> tuple[FigureRow, ...]:
         ),
         FigureRow(
             "Bending energy",
-            _figures([*"xyz", "total"], [*quality.energy, quality.energy.sum()], unit, noise),
+            _figures([*"xyz", "total"], [*quality.energy, quality.energy.sum()], ruler, noise),
             f"Of the {_warp_of(quality)}, in destination units squared per source unit",
         ),
     )
 
 
-def rms_text(rms: float, quality: Quality, unit: str) -> str:
+def rms_text(rms: float, quality: Quality, unit: Ruler | str) -> str:
     """Return what a part of the warp leaves between the pairs, as it is shown."""
     largest, noise = max(quality.rms_by_components.values()), _noise(quality)
-    ((_, text),) = _texts([rms], largest if rms > noise else 0.0, noise)
-    return f"{text} {unit}"
+    ruler = Ruler.of(unit)
+    k = ruler.factor
+    ((_, text),) = _texts([k * rms], k * largest if rms > noise else 0.0, k * noise)
+    return f"{text} {ruler.unit}"
 
 
 def figures_table(quality: Quality, unit: str) -> str:
@@ -186,12 +188,13 @@ def _noise(quality: Quality) -> float:
 
 
 def _figures(
-    names: Sequence[str], values: Sequence[float], unit: str, noise: float
+    names: Sequence[str], values: Sequence[float], ruler: Ruler, noise: float
 ) -> tuple[Figure, ...]:
     """Return lengths, all with as many decimals as the largest of them deserves."""
-    texts = _texts(values, max(abs(value) for value in values), noise)
+    k = ruler.factor
+    texts = _texts([k * x for x in values], k * max(abs(value) for value in values), k * noise)
     return tuple(
-        Figure(name, value, unit, f"{text} {unit}")
+        Figure(name, value, ruler.unit, f"{text} {ruler.unit}")
         for name, (value, text) in zip(names, texts, strict=True)
     )
 
