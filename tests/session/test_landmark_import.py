@@ -28,8 +28,8 @@ from pinwarp.session.importing.landmarks import (
     can_pair,
     default_pairing,
     imported,
-    left_waiting,
 )
+from pinwarp.session.importing.words import left_waiting
 from pinwarp.session.naming import free_names
 from pinwarp.session.session import Session
 

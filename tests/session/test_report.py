@@ -14,6 +14,7 @@ from pinwarp.session.judging.check import check
 from pinwarp.session.judging.quality import judged_at
 from pinwarp.session.judging.report import report_of
 from pinwarp.session.keeping.files import read_session
+from pinwarp.session.rulers import rulers_of
 from pinwarp.session.warp.result import WarpInputs
 from pinwarp.session.warp.solved import solved
 from pinwarp.session.warp.solver import WarpSolver
@@ -86,7 +87,7 @@ def test_the_chart_shades_the_penalties_that_do_as_well_and_says_so():
 
 def test_where_pairs_are_judged_at_another_penalty_report_check_and_list_say_at_which(tmp_path):
     session = edits.set_penalty(noisy(1.5), 2.5)
-    words = judged_at(session.settings, "mm")
+    words = judged_at(session.settings, rulers_of(session).session)
     assert "judged at penalty 0, not at 2.5 mm" in words
     report = reported(session)
     assert dict(report.remarks)["To check"] == words

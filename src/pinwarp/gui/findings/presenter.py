@@ -181,7 +181,8 @@ class FindingsPresenter(Capability):
         judged = survey.result.inputs if survey is not None else None
         places = (judged.source, judged.destination) if judged is not None else None
         astray = self._astray
-        about = (session.settings.penalty, self._editor.rulers, session.source)
+        rulers = self._editor.rulers
+        about = (session.settings.penalty, rulers, session.source)
         key = (session.landmarks, about, quality, folds, places, astray)
         if key == self._shown_for:
             return
@@ -197,7 +198,7 @@ class FindingsPresenter(Capability):
             [one for one in self._found if one.finding.kind is not FindingKind.SUGGESTED]
         )
         judged_pairs = any(one.finding.kind in _OF_PAIRS for one in self._found)
-        words = judged_at(session.settings, session.unit) if judged_pairs else ""
+        words = judged_at(session.settings, rulers.session) if judged_pairs else ""
         self.panel.show_findings(self._found, self._mirror_axis(quality), words)
         self.panel.show_selection(self._editor.selection.names)
         self._next.renew()

@@ -40,9 +40,8 @@ from pinwarp.session.importing.landmarks import (
     can_pair,
     default_pairing,
     group_words,
-    left_waiting,
-    summary,
 )
+from pinwarp.session.importing.words import left_waiting, summary
 from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.session import Session
 

@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 from qtpy.QtCore import QPointF, QRectF, QSizeF, Qt, QTimer
-from qtpy.QtGui import QColor, QPainter, QPaintEvent
+from qtpy.QtGui import QPainter, QPaintEvent
 from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.landmarks import Position, Side
@@ -25,11 +25,11 @@ from pinwarp.gui.painted.captions import (
     paint_next_click,
     paint_tool_words,
 )
+from pinwarp.gui.painted.ghosts import GhostPainter
 from pinwarp.gui.painted.labels import Labels, draw_label_below
 from pinwarp.gui.painted.legend import PaintedLegend
 from pinwarp.gui.painted.markers import (
     FAINT,
-    GHOST_RADIUS,
     HALO,
     STAR_RADIUS,
     draw_crosshair,
@@ -64,7 +64,6 @@ from pinwarp.gui.scene.drawables import (
 from pinwarp.gui.scene.model_drawables import ModelElements
 from pinwarp.gui.scene.projection import Projection
 from pinwarp.gui.scene.scene import Scene
-from pinwarp.gui.style import theme
 from pinwarp.session.warp.ghost import Ghost
 
 _Sign = TypeVar("_Sign", Marker, Ghost)
@@ -93,6 +92,7 @@ class MarkerLayer(QWidget):
         self._scene = Scene(Side.SOURCE)
         self.semilandmarks = points = SemilandmarkPainter(projection, self._project)
         self._model = ModelPainter(projection, self._project)
+        ghosts = GhostPainter(projection, self._project, self._are_hidden, self._labels)
         self._again = QTimer(self, singleShot=True, interval=_REST_MS)
         self._again.timeout.connect(self._on_rest)
         # In this order: what comes later lies on top.
@@ -106,11 +106,11 @@ class MarkerLayer(QWidget):
             Dots: self._paint_dots,
             Handles: self._paint_handles,
             Star: self._paint_star,
-            OtherGhosts: self._paint_other_ghosts,
+            OtherGhosts: ghosts.paint_others,
             Arrows: self._paint_arrows,
             Markers: self._paint_markers,
             Counterpart: self._paint_counterpart,
-            Ghost: self._paint_ghost,
+            Ghost: ghosts.paint_next,
             NextClick: self._paint_next_click,
             Badge: self._paint_badge,
             ToolWords: self._paint_tool_words,
@@ -295,44 +295,6 @@ class MarkerLayer(QWidget):
 
     def _paint_badge(self, painter: QPainter, badge: Badge) -> None:
         paint_badge(painter, badge, QRectF(self.rect()))
-
-    def _paint_ghost(self, painter: QPainter, ghost: Ghost) -> None:
-        """Paint the next ghost, faintly behind the bone, and its name, which is always read."""
-        ((x, y),), (hidden,) = self._project([ghost.position]), self._are_hidden([ghost.position])
-        at = QPointF(x, y)
-        painter.setOpacity(0.5 if hidden else 1.0)
-        self._paint_doubt(painter, ghost, at, 0.22)
-        draw_ghost(painter, at, GHOST_RADIUS)
-        painter.setOpacity(1.0)
-        # Said, too: a ring may look faint for other reasons.
-        words = f"{ghost.name}? (behind)" if hidden else f"{ghost.name}?"
-        self._labels.draw(painter, words, at)
-
-    def _paint_other_ghosts(self, painter: QPainter, others: OtherGhosts) -> None:
-        """Paint smaller rings without names, in discs that leave the bone to be seen."""
-        positions = [ghost.position for ghost in others.ghosts]
-        places, hidden = self._project(positions).tolist(), self._are_hidden(positions).tolist()
-        for ghost, place, out in zip(others.ghosts, places, hidden, strict=True):
-            painter.setOpacity(FAINT if out else 1.0)
-            self._paint_doubt(painter, ghost, QPointF(*place), 0.1)
-        for ghost, place, out in zip(others.ghosts, places, hidden, strict=True):
-            painter.setOpacity(FAINT if out else 1.0)
-            draw_ghost(painter, QPointF(*place), GHOST_RADIUS - 3)
-            if ghost.name == others.labelled:
-                at = QPointF(*place)
-                self._labels.draw(painter, f"{ghost.name}?", at)
-        painter.setOpacity(1.0)
-
-    def _paint_doubt(self, painter: QPainter, ghost: Ghost, at: QPointF, alpha: float) -> None:
-        """Paint a disc as wide as the doubt."""
-        if ghost.deviation is None:
-            return
-        radius = ghost.deviation * self._projection.pixels_per_unit(np.array(ghost.position))
-        colour = QColor(theme.GHOST_COLOUR)
-        colour.setAlphaF(alpha)
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(colour)
-        painter.drawEllipse(at, radius, radius)
 
     def _paint_counterpart(self, painter: QPainter, counterpart: Counterpart) -> None:
         """Paint a ring around the landmark that the other side's ghost stands for."""

@@ -18,6 +18,7 @@ from pinwarp.io.meshes import MeshFile
 from pinwarp.session.judging.elsewhere import Elsewhere, elsewhere
 from pinwarp.session.judging.quality import NamedFinding, judged_at, named_findings, quality_of
 from pinwarp.session.judging.suggested import about_suggested
+from pinwarp.session.rulers import rulers_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date
 from pinwarp.session.warp.result import WarpResult
@@ -240,7 +241,7 @@ def check(session: Session | SolvedWarp, source_index: SurfaceIndex | None = Non
         fitted=warp.fitted,
         findings=gravest_first(findings),
         notes=(
-            *filter(None, [judged_at(session.settings, session.unit)]),
+            *filter(None, [judged_at(session.settings, rulers_of(session).session)]),
             *_about_refinement(session),
             *not_sliding_note(result),
             *_about_files(session),

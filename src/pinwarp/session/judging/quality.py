@@ -140,19 +140,19 @@ class Quality:
         return named_findings(self.findings, self.inputs, session, ruler)
 
 
-def judged_at(settings: WarpSettings, unit: str = "") -> str:
+def judged_at(settings: WarpSettings, ruler: Ruler) -> str:
     """Say at which penalty pairs are judged where that is another than the warp's; else nothing.
 
     Examples
     --------
-    >>> judged_at(WarpSettings(2.5), "mm")
+    >>> judged_at(WarpSettings(2.5), Ruler("mm"))
     'Which pairs look wrong is judged at penalty 0, not at 2.5 mm, which spreads an error.'
-    >>> judged_at(WarpSettings())
+    >>> judged_at(WarpSettings(), Ruler("mm"))
     ''
     """
     if settings.penalty == 0:
         return ""
-    own = "infinity" if math.isinf(settings.penalty) else f"{settings.penalty:.4g} {unit}".rstrip()
+    own = "infinity" if math.isinf(settings.penalty) else ruler.text(settings.penalty)
     return f"Which pairs look wrong is judged at penalty 0, not at {own}, which spreads an error."
 
 

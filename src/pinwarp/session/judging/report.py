@@ -120,7 +120,7 @@ def report_of(
             )
         ),
         remarks=(
-            ("To check", judged_at(session.settings, unit)),
+            ("To check", judged_at(session.settings, ruler)),
             ("Warping penalty", _advice(quality.curve, unit)),
             (
                 "Pairs",
