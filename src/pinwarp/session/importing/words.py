@@ -42,6 +42,7 @@ def summary(found: Iterable[Arrival], waiting: Sequence[str] = ()) -> str:
 
     Examples
     --------
+    >>> from pinwarp.core.landmarks import Landmark
     >>> fates = zip("abcdef", [Fate.PAIRS] * 5 + [Fate.NEW])
     >>> summary([Arrival(Landmark(name), name, fate, "") for name, fate in fates], ["g"])
     '5 pair up, 1 is new (f). 1 of the session still waits (g).'
