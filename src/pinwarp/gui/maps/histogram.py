@@ -89,7 +89,8 @@ class HistogramView(QWidget):
         low, high = float(edges[0]), float(edges[-1])
         ends = (2.0**low, 2.0**high) if kind.is_ratio else (low, high)
         metrics, taken = self.fontMetrics(), -1e9
-        for tick in ColourScale(kind, ends).ticks():
+        factor = self._scale.factor if self._scale is not None else 1.0
+        for tick in ColourScale(kind, ends, factor).ticks():
             x = area.left() + tick.share * area.width()
             width = metrics.horizontalAdvance(tick.text)
             left = min(max(x - width / 2, 0.0), self.width() - width)

@@ -80,7 +80,7 @@ class PenaltyPanel(QWidget):
 
         self.slider = PenaltySlider()
         self.slider.setAccessibleName("Warping penalty")
-        self.slider.setMinimumWidth(160)
+        self.slider.setMinimumWidth(120)
         self.slider.setToolTip(
             "How much the warp is smoothed: left meets every landmark, right is the affine fit"
         )
@@ -90,11 +90,17 @@ class PenaltyPanel(QWidget):
         self.value.setAlignment(Qt.AlignmentFlag.AlignRight)
         self.value.setFixedWidth(self.fontMetrics().horizontalAdvance("0.00000000") + 14)
         self.value.setToolTip("The exact penalty, a length such as 5 or 0.5 cm, or “affine”")
+        # Only where lengths are shown in another unit than that of the files.
         self.shown_unit = QLabel()
         self.unit = QComboBox()
         self.unit.setToolTip("The unit that the files are in: nothing is converted")
         self.figures = PenaltyFigures()
         self.convention = QComboBox()
+        # It may be narrower than its longest words.
+        self.convention.setMinimumContentsLength(8)
+        self.convention.setSizeAdjustPolicy(
+            QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon
+        )
         for convention, text in _CONVENTIONS.items():
             self.convention.addItem(text, convention)
         self.convention.setToolTip(
@@ -132,7 +138,6 @@ class PenaltyPanel(QWidget):
         exact.setSpacing(4)
         exact.addWidget(self.value)
         exact.addWidget(self.shown_unit)
-        exact.addWidget(QLabel("files in"))
         exact.addWidget(self.unit)
         exact.addSpacing(theme.SPACE)
         exact.addWidget(self.convention, 1)
@@ -183,7 +188,9 @@ class PenaltyPanel(QWidget):
             penalty = self._session.settings.penalty
             self.value.setText(self._rulers.session.number(penalty, 6))
             self.value.setModified(False)
-        self.shown_unit.setText(self._rulers.session.unit)
+        shown = self._rulers.session.unit
+        self.shown_unit.setText(f"{shown}  Files:")
+        self.shown_unit.setVisible(shown != self._session.unit)
 
     def show_session(self, session: Session) -> None:
         """Show the penalty of a session."""
