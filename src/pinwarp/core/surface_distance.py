@@ -29,7 +29,7 @@ WORTH_COMPILING = 2000
 # Below so many places (a few milliseconds) a second thread is not worth starting.
 WORTH_THREADS = 4000
 # After so many places a search can be stopped: less than a tenth of a second where they are close.
-PART = 10_000
+PART = 2_500
 # Meshes of another size, or smaller than its reciprocal, are refused.
 LARGEST_SIZE = 1e60
 # A triangle flatter than this is taken for its edges: its normal would be mostly rounding.
@@ -392,9 +392,9 @@ def compare_surfaces(
     ([1.0, 1.0, 1.0], 2.236068)
     """
     middle = len(a.vertices) / (len(a.vertices) + len(b.vertices))
-    index_b = index_b or SurfaceIndex(b)
+    index_b = index_b or SurfaceIndex(b, checkpoint=within(checkpoint, 0.0, 0.0))
     forward = index_b.distances(a.vertices, within(checkpoint, 0.0, middle))
-    index_a = index_a or SurfaceIndex(a)
+    index_a = index_a or SurfaceIndex(a, checkpoint=within(checkpoint, middle, middle))
     backward = index_a.distances(b.vertices, within(checkpoint, middle, 1.0))
     return SurfaceComparison(
         forward,
