@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
+from collections.abc import Container
 
+import numpy as np
 from numpy.typing import NDArray
 from qtpy.QtCore import QPointF, QRectF, QSizeF, Qt
 from qtpy.QtGui import QColor, QFontMetricsF, QPainter, QPen
 
 from pinwarp.gui.painted.markers import RADIUS
+from pinwarp.gui.scene.drawables import Markers
 from pinwarp.gui.style import theme
 
 # Between a sign and its name, between names, and between a name and the edge of the sheet.
@@ -95,6 +98,39 @@ class Labels:
     def _add(self, bands: _Bands, box: _Box) -> None:
         for band in range(int(box[1] // self._band), int(box[3] // self._band) + 1):
             bands[band].append(box)
+
+    def draw_names(
+        self,
+        painter: QPainter,
+        shown: Markers,
+        places: NDArray,
+        hidden: NDArray[np.bool_],
+        from_right: Container[str],
+    ) -> None:
+        """Write the names of landmarks that have them, as far as there is room.
+
+        Parameters
+        ----------
+        painter
+            On the sheet.
+        shown
+            The landmarks.
+        places, hidden
+            (n, 2) where they are on the sheet, and (n,) whether the bone hides them.
+        from_right
+            Those whose names are better on the left.
+        """
+        markers, radius = shown.markers, shown.radius
+        named = [i for i, marker in enumerate(markers) if marker.labelled]
+        if named:
+            self.spare(places[~hidden], radius)
+        # What is pointed at keeps its name in a crowd, what lies behind the bone least of all.
+        for i in sorted(named, key=lambda i: (not markers[i].pointed_at, hidden[i])):
+            name, at, always = markers[i].name, QPointF(*places[i]), markers[i].pointed_at
+            painter.setOpacity(0.5 if hidden[i] else 1.0)
+            leftwards = name in from_right
+            self.draw(painter, name, at, radius, leftwards=leftwards, always=always)
+        painter.setOpacity(1.0)
 
     def draw(
         self,

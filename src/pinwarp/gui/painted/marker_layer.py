@@ -361,19 +361,4 @@ class MarkerLayer(QWidget):
             pixmap = marker_pixmap(marker.state, marker.selected, bool(hidden[i]), ratio, radius)
             x, y = places[i] - extent(radius) / 2
             painter.drawPixmap(QPointF(x, y), pixmap)
-        named = [i for i in range(len(markers)) if markers[i].labelled]
-        if named:
-            self._labels.spare(places[~hidden], radius)
-        # What is pointed at keeps its name in a crowd, what lies behind the bone least of all.
-        for i in sorted(named, key=lambda i: (not markers[i].pointed_at, hidden[i])):
-            name = markers[i].name
-            painter.setOpacity(0.5 if hidden[i] else 1.0)
-            self._labels.draw(
-                painter,
-                name,
-                QPointF(*places[i]),
-                radius,
-                leftwards=name in self._from_right,
-                always=markers[i].pointed_at,
-            )
-        painter.setOpacity(1.0)
+        self._labels.draw_names(painter, shown, places, hidden, self._from_right)
