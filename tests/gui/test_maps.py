@@ -296,7 +296,7 @@ def test_the_figures_of_the_real_femur_are_read_off_the_panel(user, shared_data)
     assert figures.percentile_95 == pytest.approx(5.40e-3, rel=0.02)
     assert figures.maximum == pytest.approx(7.63e-3, rel=0.02)
     text = user.window.parts.maps.panel.figures.text()
-    for value in ("0.00225 m", "0.00540 m", "0.00763 m"):
+    for value in ("2.25 mm", "5.40 mm", "7.63 mm"):
         assert value in text
 
 
@@ -383,8 +383,9 @@ def test_a_fold_shines_through_the_bone_with_and_without_a_map_and_goes_with_its
         assert folds_drawn(folded)
         assert loud() > 0.003
         folded.press(Qt.Key.Key_2)
-        assert loud() > 0.0005
+        # From afar the names of the selected landmarks cover so small a patch.
         folded.press(Qt.Key.Key_F)
+        assert loud() > 0.0005
         folded.press(Qt.Key.Key_1)
         folded.press(Qt.Key.Key_F)
     folded.press(Qt.Key.Key_W)
