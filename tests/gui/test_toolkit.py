@@ -14,3 +14,8 @@ def test_calls_into_qt_lose_no_reference_to_none(qapp):
     for _ in range(1000):
         point.setX(1.0)
     assert sys.getrefcount(None) > before - 500
+
+
+def test_a_window_opens_without_a_warning_of_qt(user, qtlog):
+    user.open_sample()
+    assert [record.message for record in qtlog.records] == []

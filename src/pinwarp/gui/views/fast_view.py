@@ -9,10 +9,27 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from pyvistaqt import QtInteractor
+from pyvistaqt import QtInteractor, rwi
 from pyvistaqt.rwi import _default_format
-from qtpy.QtGui import QSurfaceFormat
+from qtpy.QtGui import QGuiApplication, QOpenGLContext, QSurfaceFormat
 from qtpy.QtWidgets import QWidget
+
+
+class _SettledFormat(QSurfaceFormat):
+    """The format of a view, which is the application's from the start.
+
+    Each view sets the default anew, and Qt warns each time that the shared context has one already.
+    """
+
+    @staticmethod
+    def setDefaultFormat(wanted: QSurfaceFormat) -> None:
+        """Set it where nobody has done so."""
+        there = QGuiApplication.instance() is not None
+        if not there or QOpenGLContext.globalShareContext() is None:
+            QSurfaceFormat.setDefaultFormat(wanted)
+
+
+rwi.QSurfaceFormat = _SettledFormat
 
 
 def default_format() -> QSurfaceFormat:
