@@ -18,7 +18,7 @@ VERBS = {
     *("Draw", "Export", "Filter", "Fit", "Focus", "Import", "Load", "Lock", "Look", "Make", "Move"),
     *("Nudge", "Open", "Orbit", "Paste", "Place", "Play", "Put", "Quit", "Redo", "Refine"),
     *("Rename", "Return", "Save", "Select", "Shape", "Show", "Slide", "Snap", "Suggest", "Switch"),
-    *("Take", "Turn", "Undo", "Write"),
+    *("Take", "Turn", "Undo", "Write", "Click"),
 }
 SHIFT, CTRL = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.ControlModifier
 

@@ -41,6 +41,7 @@ class Crosshair(Capability):
                 checked=lambda: any(view.crosshair is not None for view in views.values()),
                 at="Place.15",
                 keys="H",
+                deed="Switch Keyboard Crosshair On or Off",
                 tip="Arrow keys move it over the bone, Enter clicks, Tab goes to the other bone",
             ),
         )
