@@ -17,7 +17,7 @@ Models of OpenSim
 The spline
     :func:`solve_coefficients`, :class:`TPSCoefficients3D`, :class:`PenaltyConvention`,
     :class:`Components`, :func:`factorise`, :func:`leave_one_out`, :func:`suspects`,
-    :func:`penalty_curve`
+    :func:`penalty_curve`, :func:`repeatability`, :func:`noise_level`
 What can go wrong
     :class:`PinwarpError`, :class:`PinwarpWarning`
 
@@ -41,7 +41,9 @@ if TYPE_CHECKING:
     from pinwarp.core.landmarks import Landmark, Role, Side
     from pinwarp.core.mesh import Mesh
     from pinwarp.core.model_rows import ElementRow
+    from pinwarp.core.noise import noise_level
     from pinwarp.core.quality import leave_one_out, penalty_curve
+    from pinwarp.core.repeatability import repeatability
     from pinwarp.core.settings import WarpSettings
     from pinwarp.core.surface_distance import compare_surfaces
     from pinwarp.core.suspects import suspects
@@ -84,12 +86,14 @@ __all__ = [
     "compare_surfaces",
     "factorise",
     "leave_one_out",
+    "noise_level",
     "penalty_curve",
     "read_landmarks",
     "read_mesh",
     "read_model",
     "read_session",
     "refined_session",
+    "repeatability",
     "solve_coefficients",
     "suspects",
     "warp_model",
@@ -108,7 +112,9 @@ _HOMES = {
     "core.landmarks": ("Landmark", "Role", "Side"),
     "core.mesh": ("Mesh",),
     "core.model_rows": ("ElementRow",),
+    "core.noise": ("noise_level",),
     "core.quality": ("leave_one_out", "penalty_curve"),
+    "core.repeatability": ("repeatability",),
     "core.settings": ("WarpSettings",),
     "core.surface_distance": ("compare_surfaces",),
     "core.suspects": ("suspects",),
