@@ -405,6 +405,27 @@ def test_a_penalty_that_is_none_is_not_written(tmp_path: Path, penalty: float) -
     assert list(tmp_path.iterdir()) == []
 
 
+def test_spreads_are_columns_only_where_somebody_measured_them(tmp_path: Path) -> None:
+    path = tmp_path / "a.pinwarp.csv"
+    plain = Landmark("a", extra=(("colour", "red"),))
+    measured = Landmark("b", (1, 2, 3), source_spread=0.25)
+    write_session(path, SessionRecord((plain, measured)))
+    lines = path.read_text().splitlines()
+    assert lines[-3].endswith(",note,source_spread,colour")
+    assert lines[-1].endswith(",0.25,")
+    assert read_session(path).landmarks == (
+        plain,
+        replace(measured, extra=(("colour", ""),)),
+    )
+    for wrong, reason in (("-1", "is below 0"), ("wide", "is not a number")):
+        path.write_text("\n".join(lines).replace(",0.25,", f",{wrong},") + "\n")
+        with pytest.raises(FileFormatError, match=f"line {len(lines)}.*{reason}"):
+            read_session(path)
+    both = replace(measured, destination_spread=0.5)
+    write_session(path, SessionRecord((both,)))
+    assert read_session(path).landmarks == (both,)
+
+
 def test_locks_are_a_column_only_where_some_landmark_is_locked(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     free, locked = Landmark("a"), Landmark("b", locked=True, extra=(("colour", "red"),))

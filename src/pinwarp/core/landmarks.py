@@ -83,11 +83,14 @@ class Landmark:
         Columns of a session file that this version does not know, kept as they came.
     locked
         A locked landmark is not moved by accident: the mouse and the arrow keys leave it alone.
+    source_spread, destination_spread
+        How far apart it comes to lie when it is digitised again: the root mean square distance
+        from the mean, in the unit of the position; None where nobody measured it.
 
     Raises
     ------
     LandmarkError
-        For an empty name or a coordinate that is not finite.
+        For an empty name, a coordinate that is not finite, or a spread that is no length.
 
     Examples
     --------
@@ -106,6 +109,8 @@ class Landmark:
     note: str = ""
     extra: tuple[tuple[str, str], ...] = ()
     locked: bool = False
+    source_spread: float | None = None
+    destination_spread: float | None = None
 
     def __post_init__(self) -> None:
         if not self.name.strip():
@@ -116,10 +121,23 @@ class Landmark:
                 raise LandmarkError(
                     f"{self.name}: the {side.value} position {position} is not finite."
                 )
+            spread = self.spread(side)
+            if spread is not None and not (math.isfinite(spread) and spread >= 0):
+                raise LandmarkError(f"{self.name}: the {side.value} spread {spread} is no length.")
 
     def position(self, side: Side) -> Position | None:
         """Return the position on one side, or None."""
         return self.source if side is Side.SOURCE else self.destination
+
+    def spread(self, side: Side) -> float | None:
+        """Return how precisely it was digitised on one side, or None."""
+        return self.source_spread if side is Side.SOURCE else self.destination_spread
+
+    def with_spread(self, side: Side, spread: float | None) -> Landmark:
+        """Return this landmark with the spread on one side replaced (None removes it)."""
+        if side is Side.SOURCE:
+            return replace(self, source_spread=spread)
+        return replace(self, destination_spread=spread)
 
     def placed(self, side: Side, position: Iterable[float] | None) -> Landmark:
         """Return this landmark with the position on one side replaced (None removes it)."""
@@ -252,7 +270,7 @@ def _turned(position: Position) -> Position:
 def scaled(
     landmarks: Iterable[Landmark], factor: float, side: Side | None = None
 ) -> tuple[Landmark, ...]:
-    """Multiply every position that is there, as a change of unit does.
+    """Multiply every position and spread that is there, as a change of unit does.
 
     Parameters
     ----------
@@ -279,5 +297,7 @@ def scaled(
             position = landmark.position(one)
             if position is not None:
                 landmark = landmark.placed(one, (factor * value for value in position))
+            if (spread := landmark.spread(one)) is not None:
+                landmark = landmark.with_spread(one, abs(factor) * spread)
         result.append(landmark)
     return tuple(result)

@@ -6,12 +6,13 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError
-from pinwarp.core.landmarks import Landmark, Position, Role
+from pinwarp.core.landmarks import Landmark, Position, Role, Side
 from pinwarp.io.csv_cells import (
     YES_NO,
     as_sentence,
     coordinates_text,
     formula_unquoted,
+    number_of,
     position_of,
     shortened,
 )
@@ -26,7 +27,9 @@ _COLUMNS = ("name", "role", "enabled", *_SOURCE, *_DESTINATION, "note")
 _DEFAULTS = {"role": Role.PAIR.value, "enabled": "1", "note": ""}
 # Only there where some landmark is locked.
 _LOCKED = "locked"
-_KNOWN = (*_COLUMNS, _LOCKED)
+# Only there where some landmark was digitised again.
+_SPREADS = {side: f"{side.value}_spread" for side in Side}
+_KNOWN = (*_COLUMNS, _LOCKED, *_SPREADS.values())
 # The role of rows that are no landmarks: where a refinement found the surface.
 _FITTED = "fitted"
 
@@ -52,7 +55,9 @@ def table_lines(
     extra = [c for landmark in rows for c, _ in landmark.extra if c not in _KNOWN]
     extra = list(dict.fromkeys(extra))
     locks = [_LOCKED] if any(landmark.locked for landmark in rows) else []
-    lines = [csv_line([*_COLUMNS, *locks, *extra])]
+    spread = [x for x in Side if any(landmark.spread(x) is not None for landmark in rows)]
+    spreads = [_SPREADS[side] for side in spread]
+    lines = [csv_line([*_COLUMNS, *locks, *spreads, *extra])]
     for landmark in rows:
         others = dict(landmark.extra)
         cells = [
@@ -63,10 +68,11 @@ def table_lines(
             *coordinates_text(landmark.destination),
             landmark.note,
             *["1" if landmark.locked else "0" for _ in locks],
+            *["" if (x := landmark.spread(side)) is None else repr(float(x)) for side in spread],
             *[others.get(column, "") for column in extra],
         ]
         lines.append(csv_line(cells))
-    empty = [""] * len([*locks, *extra])
+    empty = [""] * len([*locks, *spreads, *extra])
     for row in grouped:
         places = (*coordinates_text(row.source), *coordinates_text(row.destination))
         on = "1" if row.enabled else "0"
@@ -215,7 +221,19 @@ def _landmark(values: dict[str, str], columns: Sequence[str], separator: str) ->
             if column and column not in _KNOWN
         ),
         locked=locked,
+        source_spread=_spread(values, Side.SOURCE, separator),
+        destination_spread=_spread(values, Side.DESTINATION, separator),
     )
+
+
+def _spread(values: dict[str, str], side: Side, separator: str) -> float | None:
+    text = values.get(_SPREADS[side], "").strip()
+    if not text:
+        return None
+    spread = number_of(text, separator)
+    if spread < 0:
+        raise ValueError(f"the {side.value} spread {shortened(text)} is below 0")
+    return spread
 
 
 def _yes_or_no(column: str, text: str) -> bool:

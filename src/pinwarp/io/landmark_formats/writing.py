@@ -202,6 +202,11 @@ def lost(holds: Holds, outgoing: Outgoing) -> tuple[str, ...]:
         (holds.notes, "notes: those of", [x.name for x in marks if x.note]),
         (holds.locks, "locks: those of", [x.name for x in marks if x.locked]),
         (
+            False,
+            "spreads: those of",
+            [x.name for x in marks if any(x.spread(side) is not None for side in Side)],
+        ),
+        (
             holds.switches,
             "what is disabled: the switches of",
             [

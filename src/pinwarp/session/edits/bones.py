@@ -55,7 +55,13 @@ def swap_sides(session: Session) -> Session:
         source=session.destination,
         destination=session.source,
         landmarks=tuple(
-            replace(landmark, source=landmark.destination, destination=landmark.source)
+            replace(
+                landmark,
+                source=landmark.destination,
+                destination=landmark.source,
+                source_spread=landmark.destination_spread,
+                destination_spread=landmark.source_spread,
+            )
             for landmark in session.landmarks
         ),
         groups=tuple(map(_swapped, session.groups)),
