@@ -70,7 +70,7 @@ def test_the_figures_for_programs_have_names_and_types(pinwarp_command, session,
     assert list(found["distance"]) == ["mean", "rms", "percentile_95", "maximum"]
     assert 0 < found["distance"]["mean"] < 2
     assert [list(pair) for pair in found["pairs"]] == 8 * [
-        ["name", "residual", "leave_one_out", "standardised"]
+        ["name", "residual", "leave_one_out", "standardised", "spread"]
     ]
     assert found["rms_leave_one_out"] == pytest.approx(
         np.sqrt(np.mean([pair["leave_one_out"] ** 2 for pair in found["pairs"]]))

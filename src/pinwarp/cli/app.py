@@ -14,6 +14,7 @@ from pinwarp.cli.model import model
 from pinwarp.cli.open import OpenWindow, make_open
 from pinwarp.cli.options import Version
 from pinwarp.cli.refine import refine
+from pinwarp.cli.repeat import repeat
 from pinwarp.cli.suggest import suggest
 from pinwarp.cli.telling import BAD_USAGE, INTERRUPTED, tell_error
 from pinwarp.cli.warp import warp
@@ -68,6 +69,6 @@ def make_app(open_window: OpenWindow) -> typer.Typer:
         del version  # told before anything else
 
     app.command(OPEN)(make_open(open_window))
-    for command in (warp, check, suggest, refine, convert, batch, model):
+    for command in (warp, check, repeat, suggest, refine, convert, batch, model):
         app.command()(command)
     return app

@@ -72,18 +72,23 @@ def _print(console: Console, name: str, session: Session, checked: checking.Chec
     ruler = rulers_of(session).session
     count = counted(len(checked.pairs), "pair")
     pairs = Table("Pair", title=f"{name}: {count}, lengths in {ruler.unit}")
-    for column in ("Residual", "Left out", "Standardised"):
+    measured = any(not math.isnan(pair.spread) for pair in checked.pairs)
+    in_spreads = ("Spread", "Left out / spread") if measured else ()
+    for column in ("Residual", "Left out", "Standardised", *in_spreads):
         pairs.add_column(column, justify="right")
     named = {name for x in checked.findings if x.severity is Severity.WRONG for name in x.names}
     lengths = [x for pair in checked.pairs for x in (pair.residual, pair.leave_one_out)]
     decimals = _decimals(max((ruler.shown(x) for x in lengths if not math.isnan(x)), default=0.0))
     for pair in checked.pairs:
+        times = _number(pair.leave_one_out / pair.spread, 1)
+        cells = (_number(ruler.shown(pair.spread), decimals), times)
         pairs.add_row(
             # Names are the user's: brackets in them are no markup.
             escape(pair.name),
             _number(ruler.shown(pair.residual), decimals),
             _number(ruler.shown(pair.leave_one_out), decimals),
             _number(pair.standardised, 2),
+            *cells[: len(in_spreads)],
             style="bold" if pair.name in named else None,
         )
     console.print(pairs)

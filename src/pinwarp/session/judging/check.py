@@ -18,6 +18,7 @@ from pinwarp.io.meshes import MeshFile
 from pinwarp.session.judging.elsewhere import Elsewhere, elsewhere
 from pinwarp.session.judging.quality import NamedFinding, judged_at, named_findings, quality_of
 from pinwarp.session.judging.suggested import about_suggested
+from pinwarp.session.repeat.spreads import spreads_on_destination
 from pinwarp.session.rulers import rulers_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date
@@ -40,12 +41,15 @@ class PairFigures:
         The same with the pair left out of the solve.
     standardised
         That error by how far it may be expected to be: 1 is ordinary, 3 is suspicious.
+    spread
+        How far the pair may be off because of how it was digitised, where that was measured.
     """
 
     name: str
     residual: float
     leave_one_out: float = math.nan
     standardised: float = math.nan
+    spread: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -208,12 +212,14 @@ def check(session: Session | SolvedWarp, source_index: SurfaceIndex | None = Non
     quality = quality_of(result)
     assert quality is not None, "what is solved can be judged"
     names = [pair.name for pair in session.pairs]
+    spreads = spreads_on_destination(session)
     left_out = quality.left_out
     unknown = np.full(len(names), np.nan)
     columns = (
         warp.residuals,
         unknown if left_out is None else left_out.distances,
         unknown if left_out is None else left_out.standardised,
+        [spreads.get(name, math.nan) for name in names],
     )
     folds, distances = warp.folds, warp.distances()
     findings = [*quality.findings_in(session), *about_suggested(session)]

@@ -26,6 +26,7 @@ from pinwarp.session.judging.elsewhere import elsewhere
 from pinwarp.session.judging.methods import methods_of
 from pinwarp.session.judging.quality import Quality, judged_at, penalty_advice, quality_of
 from pinwarp.session.judging.suggested import about_suggested
+from pinwarp.session.repeat.spreads import kept_variance, spreads_on_destination
 from pinwarp.session.rulers import rulers_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.provenance import session_hash
@@ -127,7 +128,8 @@ def report_of(
                 "Residual: how far the warped source landmark is from its destination. "
                 "Left out: the same when the pair is left out of the solve. Standardised: that "
                 "error in units of what is usual for its surroundings; from 2.5 on it is "
-                "suspicious.",
+                "suspicious. Spread, where the landmarks were digitised again: how far a pair may "
+                "be off for that alone, of source and destination together.",
             ),
             (
                 "Distances",
@@ -168,6 +170,10 @@ def _facts(session: Session, result: WarpResult) -> tuple[tuple[str, str], ...]:
     if words := semilandmarks_in_words(result):
         facts.append(("Semilandmarks", words))
     facts += [("Semilandmarks", note) for note in not_sliding_note(result)]
+    for side in Side:
+        if (variance := kept_variance(session.landmarks, side)) is not None:
+            words = f"{ruler.text(math.sqrt(3 * variance))}, as digitised again"
+            facts.append((f"Spread of the {side.value}", words))
     if result.flexibility is not None:
         facts.append(("Flexibility", f"{result.flexibility:.0%}"))
     if result.rms_residual is not None:
@@ -224,6 +230,7 @@ def _mesh_text(session: Session, side: Side) -> str:
 
 def _of_pairs(warp: SolvedWarp, quality: Quality) -> list[ReportRow]:
     unit, left_out = warp.session.unit, quality.left_out
+    spreads = spreads_on_destination(warp.session)
     figures = []
     for row, pair in enumerate(warp.session.pairs):
         residual = float(warp.residuals[row])
@@ -232,6 +239,12 @@ def _of_pairs(warp: SolvedWarp, quality: Quality) -> list[ReportRow]:
             missed, unusual = float(left_out.distances[row]), float(left_out.standardised[row])
             figures.append(ReportRow("Pairs", pair.name, "left out", missed, unit))
             figures.append(ReportRow("Pairs", pair.name, "standardised", unusual))
+        if (spread := spreads.get(pair.name)) is not None:
+            figures.append(ReportRow("Pairs", pair.name, "spread", spread, unit))
+            figures.append(ReportRow("Pairs", pair.name, "residual / spread", residual / spread))
+            if left_out is not None:
+                times = float(left_out.distances[row]) / spread
+                figures.append(ReportRow("Pairs", pair.name, "left out / spread", times))
         for side in Side:
             for axis, number in zip(_AXES, pair.position(side) or (), strict=False):
                 figures.append(ReportRow("Pairs", pair.name, f"{side.value} {axis}", number, unit))
