@@ -23,6 +23,7 @@ from pinwarp.session import edits
 from pinwarp.session.coordinates import position_text, typed_position
 from pinwarp.session.judging.quality import NamedFinding
 from pinwarp.session.naming import natural
+from pinwarp.session.repeat.spreads import times_spread
 from pinwarp.session.rulers import Rulers
 from pinwarp.session.session import Session
 from pinwarp.session.warp.solver import is_rounding
@@ -196,9 +197,26 @@ def _length_text(length: float, row: Row) -> str:
     return row.rulers.destination.number(length, 3)
 
 
+def _residual_tip(row: Row) -> str:
+    length = row.values.get("residual")
+    unit = row.rulers.destination.unit
+    told = "" if length is None else f"{_length_text(length, row)} {unit}".rstrip()
+    return "\n".join(filter(None, (told, _in_spreads(row, "residual"))))
+
+
+def _in_spreads(row: Row, key: str) -> str:
+    """Say a length in units of how precisely the landmark was digitised, where that is known."""
+    length = row.values.get(key)
+    words = "" if length is None else times_spread(length, row.values.get("spread"))
+    return f"{row.landmark.name}: {words}" if words else ""
+
+
 def _left_out_tip(row: Row) -> str:
-    if row.findings:
-        return "\n".join(found.sentence for found in row.findings)
+    told = [found.sentence for found in row.findings] or [_usual(row)]
+    return "\n".join(filter(None, (*told, _in_spreads(row, "left_out"))))
+
+
+def _usual(row: Row) -> str:
     missed, times = row.values.get("left_out"), row.values.get("standardised")
     if missed is None or times is None or not math.isfinite(missed):
         return ""
@@ -297,6 +315,7 @@ COLUMNS: tuple[Column, ...] = (
         "Residual",
         "Distance from the warped source landmark to its destination",
         _length_text,
+        cell_tip=_residual_tip,
         is_length=True,
         has_bar=True,
     ),

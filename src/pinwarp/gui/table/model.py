@@ -18,6 +18,7 @@ from pinwarp.gui.style import theme
 from pinwarp.gui.style.icons import icon
 from pinwarp.gui.table.columns import COLUMNS, NAME, Column, Row, column_number
 from pinwarp.session.judging.quality import NamedFinding, Quality
+from pinwarp.session.repeat.spreads import spreads_on_destination
 from pinwarp.session.rulers import Rulers
 from pinwarp.session.session import Session
 from pinwarp.session.warp.pair_names import pair_names
@@ -26,7 +27,7 @@ from pinwarp.session.warp.result import WarpInputs, WarpResult
 # The role under which a cell says how large its number is beside the largest of its column.
 SHARE = Qt.ItemDataRole.UserRole
 # Numbers without a column: tips ask for them when they are shown.
-_ONLY_TOLD = ("standardised",)
+_ONLY_TOLD = ("standardised", "spread")
 _ROWS_MIME = "application/x-pinwarp-landmarks"
 # Made once: Qt asks for them cell by cell whenever the selection changes.
 _BETWEEN_ROWS = Qt.ItemFlag.ItemIsDropEnabled
@@ -92,6 +93,7 @@ class LandmarkModel(QAbstractTableModel):
         self._update(session.landmarks)
         for key in self._figures:
             self._show_figures(key)
+        self.show_values("spread", spreads_on_destination(session))
         self.is_updating = False
 
     def show_rulers(self, rulers: Rulers) -> None:
