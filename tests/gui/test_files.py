@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import threading
-import warnings
 
 import numpy as np
 import pytest
-from qtpy.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
-from qtpy.QtGui import QDragEnterEvent, QDropEvent
-from qtpy.QtWidgets import QApplication
+from qtpy.QtCore import QPoint, Qt
+from tests.gui.dropping import drop
 
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.files import session_meshes
@@ -21,26 +19,6 @@ from pinwarp.io.samples import assets_folder
 from pinwarp.io.session_file import read_session
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
-
-
-def drop(viewport, *paths):
-    """Drop files from the desktop onto a viewport."""
-    data = QMimeData()
-    data.setUrls([QUrl.fromLocalFile(str(path)) for path in paths])
-    at = viewport.rect().center()
-    arguments = (
-        Qt.DropAction.CopyAction,
-        data,
-        Qt.MouseButton.LeftButton,
-        Qt.KeyboardModifier.NoModifier,
-    )
-    with warnings.catch_warnings():
-        # PySide calls the only constructor that there is deprecated.
-        warnings.simplefilter("ignore", DeprecationWarning)
-        enter = QDragEnterEvent(at, *arguments)
-    QApplication.sendEvent(viewport, enter)
-    assert enter.isAccepted()
-    QApplication.sendEvent(viewport, QDropEvent(QPointF(at), *arguments))
 
 
 def test_an_empty_window_says_what_to_do_next(user):

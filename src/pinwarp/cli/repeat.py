@@ -199,7 +199,7 @@ def _print(
         f"{axis} {share:.0%}" for axis, share in zip("xyz", _axis_shares(repeats), strict=True)
     )
     told = [
-        ("Pooled spread", f"{_length(figures.spread, unit)} (95 %: {low:.3g} to {high:.3g})"),
+        ("Pooled spread", f"{_length(figures.spread, unit)} (95%: {low:.3g} to {high:.3g})"),
         (
             "Of one coordinate",
             f"{_length(math.sqrt(figures.variance), unit)}, {figures.freedom} degrees of freedom",

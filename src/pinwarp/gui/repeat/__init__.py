@@ -1,0 +1,1 @@
+"""How precise the landmarks are, from sets of them that were digitised again."""

@@ -37,6 +37,7 @@ from pinwarp.gui.placing.guidance import Guidance
 from pinwarp.gui.placing.hand import Hand
 from pinwarp.gui.placing.reviewing import Reviewing
 from pinwarp.gui.refining.presenter import RefiningPresenter
+from pinwarp.gui.repeat.presenter import LandmarkPrecision
 from pinwarp.gui.semilandmarks.presenter import Semilandmarks
 from pinwarp.gui.suggesting.presenter import Suggesting
 from pinwarp.gui.table.presenter import TablePresenter
@@ -172,6 +173,7 @@ class Parts:
             ModelExport(opened, tasks).action,
         )
         self.documents.hand_models_to(self.model.open)
+        self.precision = LandmarkPrecision(editor, tasks, frame)
         self.exports = Exports(editor, tasks)
         self.semilandmark_export = SemilandmarkExport(editor, tasks)
         self.pictures = PictureExport(editor, tasks, views, frame)
