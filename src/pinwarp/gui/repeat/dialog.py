@@ -100,7 +100,7 @@ class PrecisionDialog(QDialog):
             "Residuals and left-out errors are then told in units of them, too; they are saved "
             "with the session"
         )
-        for label in (self.spread, self.axes, self.penalty):
+        for label in (self.spread, self.axes, self.penalty, self.done_words):
             label.setTextFormat(Qt.TextFormat.PlainText)
             label.setWordWrap(True)
             label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
@@ -140,8 +140,7 @@ class PrecisionDialog(QDialog):
         last = QHBoxLayout()
         last.addWidget(self.use)
         last.addWidget(self.keep)
-        last.addWidget(self.done_words)
-        last.addStretch()
+        last.addWidget(self.done_words, 1)
         last.addWidget(self.buttons)
         column = QVBoxLayout(self)
         column.setContentsMargins(16, 14, 16, 12)
