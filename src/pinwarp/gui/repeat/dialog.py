@@ -29,6 +29,7 @@ from pinwarp.core.landmarks import Side
 from pinwarp.gui.repeat.spread_table import SpreadTable
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.lengths import format_length
+from pinwarp.gui.tasks.dropping import dropped_files
 from pinwarp.session.repeat.level import PenaltyOfNoise
 from pinwarp.session.repeat.measuring import Asked, Measured
 
@@ -180,14 +181,11 @@ class PrecisionDialog(QDialog):
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         """Take files from the outside."""
-        if any(url.isLocalFile() for url in event.mimeData().urls()):
-            event.acceptProposedAction()
+        dropped_files(event)
 
     def dropEvent(self, event: QDropEvent) -> None:
         """Add the files that were dropped."""
-        paths = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
-        if paths:
-            event.acceptProposedAction()
+        if paths := dropped_files(event):
             self.add_files(paths)
 
     def _remove(self) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +14,7 @@ from qtpy.QtWidgets import QWidget
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.drawn.surfaces import Surfaces
 from pinwarp.gui.scene.drawables import CurveHandle, Marker
+from pinwarp.gui.tasks.dropping import dropped_files
 from pinwarp.gui.views.canvas import OUTLINE_REACH, Canvas
 from pinwarp.gui.views.tool import Tool
 from pinwarp.session.warp.ghost import Ghost
@@ -361,12 +361,9 @@ class Viewport(Canvas):
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         """Take files from the outside."""
-        if any(url.isLocalFile() for url in event.mimeData().urls()):
-            event.acceptProposedAction()
+        dropped_files(event)
 
     def dropEvent(self, event: QDropEvent) -> None:
         """Say which files were dropped here."""
-        paths = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
-        if paths:
-            event.acceptProposedAction()
+        if paths := dropped_files(event):
             self.files_dropped.emit(paths)
