@@ -26,9 +26,9 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.landmarks import Side
+from pinwarp.core.lengths import format_number
 from pinwarp.gui.repeat.spread_table import SpreadTable
 from pinwarp.gui.style import theme
-from pinwarp.gui.style.lengths import format_length
 from pinwarp.gui.tasks.dropping import dropped_files
 from pinwarp.session.repeat.level import PenaltyOfNoise
 from pinwarp.session.repeat.measuring import Asked, Measured
@@ -225,10 +225,10 @@ class PrecisionDialog(QDialog):
         if repeats is not None:
             unit = repeats.unit or unit
             figures = repeats.figures
-            low, high = (format_length(x, "", 3) for x in figures.interval)
-            one = format_length(math.sqrt(figures.variance), unit, 3)
+            low, high = (_length(x, "", 3) for x in figures.interval)
+            one = _length(math.sqrt(figures.variance), unit, 3)
             self.spread.setText(
-                f"{format_length(figures.spread, unit, 3)} (95%: {low} to {high}); of one "
+                f"{_length(figures.spread, unit, 3)} (95%: {low} to {high}); of one "
                 f"coordinate {one}, {figures.freedom} degrees of freedom"
             )
             shares = figures.axis_variances / figures.axis_variances.sum()
@@ -250,6 +250,10 @@ class PrecisionDialog(QDialog):
 
 
 def _penalty_words(found: PenaltyOfNoise, unit: str) -> str:
-    low, high = (format_length(x, "", 3) for x in (found.low, found.high))
-    penalty = format_length(found.penalty, unit, 3)
+    low, high = (_length(x, "", 3) for x in (found.low, found.high))
+    penalty = _length(found.penalty, unit, 3)
     return f"{penalty} ({low} to {high}). {found.words}"
+
+
+def _length(value: float, unit: str, digits: int) -> str:
+    return "affine" if math.isinf(value) else f"{format_number(value, digits)} {unit}".rstrip()

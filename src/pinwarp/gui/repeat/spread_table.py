@@ -8,9 +8,9 @@ from typing import Any
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QHeaderView, QTreeWidget, QTreeWidgetItem
 
+from pinwarp.core.lengths import format_number
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.icons import icon
-from pinwarp.gui.style.lengths import format_number
 from pinwarp.session.naming import natural
 from pinwarp.session.repeat.comparing import Repeats
 
