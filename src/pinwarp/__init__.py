@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from pinwarp.core.quality import leave_one_out, penalty_curve
     from pinwarp.core.repeatability import repeatability
     from pinwarp.core.settings import WarpSettings
-    from pinwarp.core.surface_distance import compare_surfaces
+    from pinwarp.core.surface_comparison import compare_surfaces
     from pinwarp.core.suspects import suspects
     from pinwarp.io.landmark_files import read_landmarks, write_landmarks
     from pinwarp.io.meshes import MeshFile, read_mesh, write_mesh

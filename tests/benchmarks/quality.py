@@ -19,7 +19,8 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.core.prediction import prediction_of
 from pinwarp.core.quality import leave_one_out, penalty_curve
 from pinwarp.core.spline import solve
-from pinwarp.core.surface_distance import SurfaceIndex, compare_surfaces
+from pinwarp.core.surface_comparison import compare_surfaces
+from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.core.suspects import suspects
 from tests.benchmarks.shapes import landmark_pairs, surface_points, true_warp
 from tests.benchmarks.timing import in_turn

@@ -13,7 +13,8 @@ from pinwarp.core import kernel, surface_distance
 from pinwarp.core.errors import Cancelled, LandmarkError
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import factorise, solve
-from pinwarp.core.surface_distance import DistanceFigures, SurfaceIndex, compare_surfaces
+from pinwarp.core.surface_comparison import DistanceFigures, compare_surfaces
+from pinwarp.core.surface_distance import SurfaceIndex
 
 TRIANGLE = Mesh([[0, 0, 0], [1, 0, 0], [0, 2, 0]], [[0, 1, 2]])
 

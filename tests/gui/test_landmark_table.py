@@ -19,6 +19,7 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.landmarks import Landmark, LandmarkState, Role, Side
+from pinwarp.gui.style import theme
 from pinwarp.gui.table.columns import COLUMNS, column_number
 from pinwarp.gui.table.rename_dialog import RenameDialog
 from pinwarp.session import edits
@@ -162,7 +163,7 @@ def test_a_disabled_pair_stays_dimmed_and_out_under_sorting_and_filtering(four):
     four.panel.filter.setText("disabled")
     assert four.shown() == ["b"]
     colour = four.table.index_of("b").data(Qt.ItemDataRole.ForegroundRole)
-    assert colour.name() == "#8b919a"
+    assert colour.name() == theme.STATE_COLOURS[LandmarkState.DISABLED]
     assert [x.name for x in four.session.pairs] == ["a10", "a9"]
     four.click("b")
     four.press(Qt.Key.Key_D, CONTROL)

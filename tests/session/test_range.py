@@ -19,7 +19,7 @@ from pinwarp.core.maps import MapKind, automatic_range
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.quality import leave_one_out, penalty_curve
 from pinwarp.core.spline import solve
-from pinwarp.core.surface_distance import compare_surfaces
+from pinwarp.core.surface_comparison import compare_surfaces
 from pinwarp.session import edits
 from pinwarp.session.judging.check import check
 from pinwarp.session.judging.quality import quality_of

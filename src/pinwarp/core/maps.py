@@ -18,7 +18,8 @@ from pinwarp.core.live import LARGEST_SINGLE
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.prediction import Prediction
 from pinwarp.core.spline import Spline, solve
-from pinwarp.core.surface_distance import SurfaceComparison, SurfaceIndex, compare_surfaces
+from pinwarp.core.surface_comparison import SurfaceComparison, compare_surfaces
+from pinwarp.core.surface_distance import SurfaceIndex
 
 Matrix = NDArray[np.float64]
 Range = tuple[float, float]

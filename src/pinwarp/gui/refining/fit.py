@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 from pinwarp.core.errors import RangeError
 from pinwarp.core.landmarks import Side
-from pinwarp.core.surface_distance import DistanceFigures, SurfaceIndex
+from pinwarp.core.surface_comparison import DistanceFigures
+from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.session import edits
 from pinwarp.session.session import Session

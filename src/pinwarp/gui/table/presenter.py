@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 
 from qtpy.QtCore import QSettings
 from qtpy.QtWidgets import QInputDialog
@@ -16,6 +16,7 @@ from pinwarp.gui.table.model import LandmarkModel
 from pinwarp.gui.table.panel import LandmarkPanel
 from pinwarp.gui.table.rename_dialog import RenameDialog
 from pinwarp.gui.table.spreadsheet import Spreadsheet
+from pinwarp.gui.table.states import all_disabled, all_locked, all_passengers
 from pinwarp.gui.table.table import LandmarkTable
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.warp.warps import Warps
@@ -244,9 +245,9 @@ class TablePresenter(Capability):
         self.table.show_selection(self._editor.selection)
         names = set(self._editor.selection.names)
         chosen = [mark for mark in self._editor.committed.landmarks if mark.name in names]
-        self._toggle_enabled.reword("&Enable" if _all_disabled(chosen) else "&Disable")
-        self._toggle_locked.reword("Un&lock" if _all_locked(chosen) else "&Lock")
-        self._toggle_role.reword("Make &Pair" if _all_passengers(chosen) else "Make &Passenger")
+        self._toggle_enabled.reword("&Enable" if all_disabled(chosen) else "&Disable")
+        self._toggle_locked.reword("Un&lock" if all_locked(chosen) else "&Lock")
+        self._toggle_role.reword("Make &Pair" if all_passengers(chosen) else "Make &Passenger")
 
     # Names, notes, typed numbers
 
@@ -323,19 +324,19 @@ class TablePresenter(Capability):
         """Disable the selected pairs, or enable them where all are disabled."""
         pairs = [mark for mark in self._selected() if mark.role is not Role.PASSENGER]
         if pairs:
-            self._set_enabled([mark.name for mark in pairs], _all_disabled(pairs))
+            self._set_enabled([mark.name for mark in pairs], all_disabled(pairs))
         elif self._editor.selection.names:
             self._say("A passenger does not take part in the solve: there is nothing to disable.")
 
     def toggle_locked(self) -> None:
         """Lock the selected landmarks, or unlock them where all are locked."""
         chosen = self._selected()
-        self._set_locked([mark.name for mark in chosen], not _all_locked(chosen))
+        self._set_locked([mark.name for mark in chosen], not all_locked(chosen))
 
     def toggle_role(self) -> None:
         """Make the selected landmarks passengers, or pairs where all are passengers."""
         chosen = self._selected()
-        role = Role.PAIR if _all_passengers(chosen) else Role.PASSENGER
+        role = Role.PAIR if all_passengers(chosen) else Role.PASSENGER
         names = [mark.name for mark in chosen]
         kind = f"a {role.value}" if len(names) == 1 else f"{role.value}s"
         self._try(
@@ -391,16 +392,3 @@ class TablePresenter(Capability):
         self.panel.reveal([landmark.name])
         self._editor.select(landmark.name)
         self._say(f"{landmark.name}: {landmark.state.value}.")
-
-
-def _all_disabled(landmarks: Iterable[Landmark]) -> bool:
-    pairs = [mark for mark in landmarks if mark.role is not Role.PASSENGER]
-    return bool(pairs) and not any(mark.enabled for mark in pairs)
-
-
-def _all_locked(landmarks: Sequence[Landmark]) -> bool:
-    return bool(landmarks) and all(mark.locked for mark in landmarks)
-
-
-def _all_passengers(landmarks: Sequence[Landmark]) -> bool:
-    return bool(landmarks) and all(mark.role is Role.PASSENGER for mark in landmarks)

@@ -13,7 +13,8 @@ from pinwarp.core.groups import Curve
 from pinwarp.core.landmarks import Side
 from pinwarp.core.lengths import rms
 from pinwarp.core.names import look_alike_notes
-from pinwarp.core.surface_distance import DistanceFigures, SurfaceIndex
+from pinwarp.core.surface_comparison import DistanceFigures
+from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session.judging.elsewhere import Elsewhere, elsewhere
 from pinwarp.session.judging.quality import NamedFinding, judged_at, named_findings, quality_of

@@ -16,7 +16,7 @@ from pinwarp.core.landmarks import Side
 from pinwarp.core.lengths import Ruler
 from pinwarp.core.model_rows import ElementRow, counts
 from pinwarp.core.quality import PenaltyCurve
-from pinwarp.core.surface_distance import SurfaceComparison
+from pinwarp.core.surface_comparison import SurfaceComparison
 from pinwarp.io.chart import Band, Line, Mark, line_chart
 from pinwarp.io.meshes import MeshFile
 from pinwarp.io.refinement_record import RefinementRecord

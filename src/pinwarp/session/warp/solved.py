@@ -20,7 +20,8 @@ from pinwarp.core.jacobian import determinants, jacobians
 from pinwarp.core.landmarks import Landmark, Side, positions
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import Spline
-from pinwarp.core.surface_distance import SurfaceComparison, SurfaceIndex, compare_surfaces
+from pinwarp.core.surface_comparison import SurfaceComparison, compare_surfaces
+from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.session.session import Session
 from pinwarp.session.warp.result import WarpInputs, WarpResult
 from pinwarp.session.warp.solver import WarpSolver
