@@ -167,3 +167,12 @@ def test_a_bone_that_was_panned_away_says_how_it_comes_back(sample):
     assert viewport.layer.is_bone_lost
     sample.press(Qt.Key.Key_Home)
     assert not viewport.layer.is_bone_lost
+
+
+def test_the_key_that_changes_how_cameras_move_together_says_what_it_switched_to(sample):
+    said = []
+    for _ in range(3):
+        sample.press(Qt.Key.Key_K)
+        said.append(sample.window.statusBar().currentMessage())
+    assert len(set(said)) == 3
+    assert all(words.startswith("Cameras: ") for words in said)

@@ -341,7 +341,7 @@ def test_the_scale_bar_is_as_long_as_its_length_looks_at_the_focal_plane(user, p
     ends = viewport.project(np.array([here.focal_point, here.focal_point + across]))
     pixels = float(np.linalg.norm(ends[1] - ends[0]))
     assert 50.0 / viewport.unit_per_pixel == pytest.approx(pixels, rel=1e-6)
-    assert viewport.drawn(ScaleBar).unit == "mm"
+    assert viewport.drawn(ScaleBar).ruler.unit == "mm"
 
 
 def test_the_scale_bar_is_in_the_corner_in_the_unit_of_the_session(qapp):
