@@ -499,8 +499,8 @@ def test_scaling_takes_the_landmarks_along_and_is_one_step(user, small_bone, bri
 
 def test_a_unit_that_is_wrong_on_one_side_is_not_shown_there(user, small_bone):
     open_apart(user, small_bone)
-    assert user.window.viewports[SOURCE].drawn(ScaleBar).unit == "m"
-    assert user.window.viewports[DESTINATION].drawn(ScaleBar).unit == ""
+    assert user.window.viewports[SOURCE].drawn(ScaleBar).ruler.unit == "m"
+    assert user.window.viewports[DESTINATION].drawn(ScaleBar).ruler.unit == ""
     model = user.window.parts.table.model
     columns = {model.title(number) for number in range(model.columnCount())}
     assert {"Source x\nm", "Dest. x", "Residual", "Left out"} <= columns
