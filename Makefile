@@ -12,13 +12,15 @@ export PYTHON
 # The system packages come before everything else, with -j too.
 .NOTPARALLEL:
 
-.PHONY: run test lint types layers check bench pictures clean help
+.PHONY: run test lint types layers check bench pictures wheel bundle clean help
 
 help:
 	@echo "make run      open the window on the sample bones"
 	@echo "make test     lint, types, import rules and tests, under a virtual screen"
 	@echo "make bench    speed and memory against other libraries, under 5 minutes"
 	@echo "make pictures draw the pictures of the README and of the user guide anew"
+	@echo "make wheel    the package for pip, pipx and uv, and its sources, into dist"
+	@echo "make bundle   the program that needs no Python, for this system, into dist"
 	@echo "make clean    remove the environment and what was built"
 
 # Without a display the window cannot open: a picture of it is the next best thing.
@@ -59,6 +61,20 @@ bench: system-with-screen $(VENV)/dev
 pictures: system-with-screen $(VENV)/run
 	xvfb-run -a -s "-screen 0 1280x800x24" $(BIN)/python assets/make_help_pictures.py
 
+# The wheel is built from the sources that are handed out, not from the checkout.
+wheel: $(VENV)/pip
+	$(BIN)/python -m pip install --quiet --group wheel
+	$(BIN)/python -m build --outdir dist
+	$(BIN)/twine check --strict dist/*.whl dist/*.tar.gz
+
+# An environment of its own: what lies in a developer's would go into the bundle. Windows, where
+# make is rare, takes these three lines as they are.
+bundle:
+	$(PYTHON) -m venv build/venv
+	build/venv/bin/python -m pip install --quiet --upgrade "pip>=25.1"
+	build/venv/bin/python -m pip install --quiet . --group bundle
+	build/venv/bin/python .bundle/make.py
+
 $(VENV)/pip:
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade "pip>=25.1"
@@ -73,4 +89,4 @@ $(VENV)/dev: $(VENV)/run
 	@touch $@
 
 clean:
-	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache dist
+	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache build dist

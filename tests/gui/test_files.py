@@ -6,10 +6,13 @@ import threading
 
 import numpy as np
 import pytest
-from qtpy.QtCore import QPoint, Qt
+from qtpy.QtCore import QPoint, Qt, QUrl
+from qtpy.QtGui import QFileOpenEvent
+from qtpy.QtWidgets import QApplication
 from tests.gui.dropping import drop
 
 from pinwarp.core.landmarks import Side
+from pinwarp.gui.app import take_files
 from pinwarp.gui.files import session_meshes
 from pinwarp.gui.files.documents import Opening
 from pinwarp.gui.files.file_dialogs import Answer
@@ -85,6 +88,14 @@ def test_a_session_dropped_on_a_viewport_is_opened(user, sample_copy):
     user.settle()
     assert user.editor.path == sample_copy
     assert user.window.windowTitle() == "femur_sample[*] – pinwarp"
+
+
+def test_what_the_desktop_hands_to_the_program_is_opened(user, sample_copy, qapp):
+    take_files(qapp, user.window)
+    QApplication.sendEvent(qapp, QFileOpenEvent(QUrl.fromLocalFile(str(sample_copy))))
+    user.settle()
+    assert user.editor.path == sample_copy
+    assert len(user.session.pairs) == 16
 
 
 def test_a_dropped_file_of_another_kind_gets_a_message(user, tmp_path):

@@ -6,6 +6,7 @@ import contextlib
 import functools
 import logging
 import os
+import sys
 import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -48,8 +49,10 @@ def _threads_for(sums: int) -> Iterator[None]:
 @functools.cache
 def compiled() -> ModuleType | None:
     """Return the compiled loops, or None where numba cannot compile."""
-    if not _is_writable(Path(__file__).parent) and "NUMBA_CACHE_DIR" not in os.environ:
-        # A package folder for reading only (a system-wide install): numba caches elsewhere.
+    beside = _is_writable(Path(__file__).parent) and not getattr(sys, "frozen", False)
+    if not beside and "NUMBA_CACHE_DIR" not in os.environ:
+        # A package folder for reading only (a system-wide install), or a bundle, whose signature
+        # speaks for every file in it: numba caches elsewhere.
         os.environ["NUMBA_CACHE_DIR"] = str(private_cache())
     try:
         from pinwarp.core import compiled as loops

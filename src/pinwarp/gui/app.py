@@ -10,13 +10,14 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import platformdirs
-from qtpy.QtCore import QEventLoop, QSettings, Qt, QTimer
+from qtpy.QtCore import QEvent, QEventLoop, QSettings, Qt, QTimer, Signal
 from qtpy.QtGui import QSurfaceFormat
 from qtpy.QtWidgets import QApplication
 from threadpoolctl import threadpool_limits
 
 from pinwarp.core import kernel, surface_distance
 from pinwarp.core.errors import words_of
+from pinwarp.core.landmarks import Side
 from pinwarp.gui.files.documents import Opening
 from pinwarp.gui.views.fast_view import default_format
 from pinwarp.gui.window.main_window import MainWindow
@@ -57,17 +58,35 @@ class PrintedMessages(WindowDialogs):
         print("\n".join(filter(None, (f"{title}: {text}", details))), file=sys.stderr)
 
 
-def make_application() -> QApplication:
-    """Return the one QApplication, set up for VTK."""
+class Application(QApplication):
+    """The application; ``file_came`` with the path of a file that the desktop hands to it.
+
+    macOS starts no second program for a file that is double-clicked, and names none to the first.
+    """
+
+    file_came = Signal(object)
+
+    def event(self, event: QEvent) -> bool:
+        """Take a file."""
+        if event.type() == QEvent.Type.FileOpen and event.file():
+            self.file_came.emit(Path(event.file()))
+            return True
+        return super().event(event)
+
+
+def make_application() -> Application:
+    """Return the one application, set up for VTK."""
     existing = QApplication.instance()
-    if isinstance(existing, QApplication):
+    if isinstance(existing, Application):
         return existing
     # Else a view moved into a floating dock loses its context and crashes.
     QApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
     # The shared context must have the format that each view will ask for.
     QSurfaceFormat.setDefaultFormat(default_format())
-    application = QApplication(["pinwarp"])
+    application = Application(["pinwarp"])
     application.setApplicationName("pinwarp")
+    # By this a desktop knows which of its entries the window belongs to.
+    application.setDesktopFileName("pinwarp")
     application.setStyle("fusion")
     return application
 
@@ -127,9 +146,10 @@ def run(opening: Opening, *, demo: bool = False, screenshot: Path | None = None)
         return 1 if failed else 0
 
 
-def _run_for_user(application: QApplication, opening: Opening, *, demo: bool) -> int:
+def _run_for_user(application: Application, opening: Opening, *, demo: bool) -> int:
     window = user_window()
     with window.faults.taken_over():
+        take_files(application, window)
         window.show()
         # From the event loop: what goes wrong there must not keep the window from starting.
         QTimer.singleShot(0, window, lambda: begin(window, opening, demo=demo))
@@ -161,6 +181,13 @@ def user_window(dialogs: WindowDialogs | None = None) -> MainWindow:
     if problem:
         window.note("Settings are not remembered", problem)
     return window
+
+
+def take_files(application: Application, window: MainWindow) -> None:
+    """Open in a window, as long as it lives, what the desktop hands to the application."""
+    documents = window.parts.documents
+    taken = application.file_came.connect(lambda path: documents.open_files(Side.SOURCE, [path]))
+    window.destroyed.connect(lambda: application.file_came.disconnect(taken))
 
 
 def _tidy_and_warm_up(folders: Iterable[Path]) -> None:

@@ -10,6 +10,7 @@ from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.core.words import counted
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
+from pinwarp.gui.scene.key_words import with_own_keys
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, MESH_FILES, FileTasks, Progress
 from pinwarp.io.atomic import write_atomically
@@ -138,7 +139,7 @@ class Exports(Capability):
         if passengers and not session.passengers:
             self._tasks.dialogs.tell_error(
                 "Cannot export passengers",
-                "There is no passenger: Ctrl+click on the source adds one.",
+                with_own_keys("There is no passenger: Ctrl+click on the source adds one."),
             )
             return
         proposal = self._tasks.folder() / f"{what}_warped.landmarks.csv"

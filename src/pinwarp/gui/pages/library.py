@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from pinwarp.gui.scene.key_words import with_own_keys
+
 _FIELD = re.compile(r"\{([a-z_0-9]+)((?:\.[a-z]+)?)\}")
 _MARKS = re.compile(r"!\[([^\]]*)\]\([^)]*\)|\[([^\]]*)\]\([^)]*\)|[*`|#]")
 
@@ -57,7 +59,7 @@ class Page:
         'Press save: keys.'
         """
         text = _FIELD.sub(lambda found: words(found[1], found[2].lstrip(".")), self.text)
-        return Page(self.name, text)
+        return Page(self.name, with_own_keys(text))
 
     @property
     def plain(self) -> str:

@@ -13,6 +13,7 @@ from pinwarp.gui.placing.ghosts import Ghosts
 from pinwarp.gui.placing.guide_bar import GuideBar
 from pinwarp.gui.placing.hand import Hand
 from pinwarp.gui.scene.drawables import Drawable, NextClick
+from pinwarp.gui.scene.key_words import with_own_keys
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, FileTasks
 from pinwarp.io.template import read_template
@@ -174,7 +175,7 @@ class Guidance(Capability):
             return
         missing = [side for side in Side if session.mesh(side) is None]
         if missing and session.pairs:
-            self.hint.setText(_ONLY_POINTS[missing[0]])
+            self.hint.setText(with_own_keys(_ONLY_POINTS[missing[0]]))
             return
         if missing:
             self.hint.setText(f"Open the {missing[0].value} mesh to begin, or drop it on its view.")

@@ -9,6 +9,7 @@ from pinwarp.core.lengths import Ruler
 from pinwarp.core.refinement import Level
 from pinwarp.core.words import counted
 from pinwarp.gui.refining.fit import Fit
+from pinwarp.gui.scene.key_words import with_own_keys
 from pinwarp.gui.style import theme
 from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.session.warp.refining import Verification
@@ -22,7 +23,7 @@ CANCELLED = "Cancelled: the warp is as it was."
 CHANGED = "Landmarks, drawn curves, a mesh or the penalty changed: the refinement was cancelled."
 CHECK_CHANGED = "Landmarks, drawn curves, a mesh or the penalty changed: the check was cancelled."
 CHECK_CANCELLED = "The check was cancelled."
-NOTHING_TO_COMPARE = "The warp is not refined: Ctrl+R refines it to the surface."
+NOTHING_TO_COMPARE = with_own_keys("The warp is not refined: Ctrl+R refines it to the surface.")
 STARTING = "Spreading places over the source"
 CHECKING = "Checking the refinement"
 FAILED = "The refinement failed: Help > Copy Details says what went wrong. The warp is as it was."

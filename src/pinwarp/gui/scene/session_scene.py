@@ -20,6 +20,7 @@ from pinwarp.gui.scene.drawables import (
     Markers,
     ScaleBar,
 )
+from pinwarp.gui.scene.key_words import with_own_keys
 from pinwarp.io.mesh_reference import MeshReference
 from pinwarp.io.meshes import MeshFile
 from pinwarp.session.judging.quality import Quality
@@ -62,13 +63,14 @@ def session_drawables(
     carried = side is Side.DESTINATION and result is not None and result.vertices is not None
     markers = _markers(side, session, selection, view, result)
     is_empty = mesh is None and not carried and not markers
-    words = _file_words(file) if file is not None else "" if is_empty else _NO_MESH[side]
+    no_mesh = "" if is_empty else with_own_keys(_NO_MESH[side])
+    words = _file_words(file) if file is not None else no_mesh
     notes = file.notes if isinstance(file, MeshFile) else ()
     yield Caption(side.value.capitalize(), words, notes)
     if mesh is not None:
         yield Bone(mesh, view.wireframe)
     elif is_empty:
-        yield Hint(_EMPTY_HINTS[side])
+        yield Hint(with_own_keys(_EMPTY_HINTS[side]))
     if not is_empty:
         yield ScaleBar(rulers_of(session, view.lengths).on(side))
     if view.section is not None:

@@ -5,10 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from qtpy.QtCore import QEvent, QObject, QPointF, QRectF, Qt
-from qtpy.QtGui import QAction, QColor, QFont, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen
+from qtpy.QtGui import (
+    QAction,
+    QColor,
+    QFont,
+    QKeyEvent,
+    QKeySequence,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+)
 from qtpy.QtWidgets import QWidget
 
 from pinwarp.gui.capability.action import DEED
+from pinwarp.gui.scene.key_words import with_own_keys
 
 Lines = list[tuple[str, str]]
 
@@ -51,7 +62,9 @@ class ShortcutOverlay(QWidget):
 
     def lines(self) -> list[tuple[str, Lines]]:
         """Return what is listed: titles, and keys with what they do."""
-        listed: list[tuple[str, Lines]] = [("Mouse", _MOUSE)]
+        listed: list[tuple[str, Lines]] = [
+            ("Mouse", [(with_own_keys(keys), words) for keys, words in _MOUSE])
+        ]
         for title, actions in self._groups:
             entries = [entry for entry in map(_entry, actions) if entry[0]]
             if entries:
@@ -136,7 +149,8 @@ class ShortcutOverlay(QWidget):
 def _entry(action: QAction) -> tuple[str, str]:
     """Return the keys of an action and what it does; a key that is held stands behind a tab."""
     words, _, held = action.text().replace("&", "").partition("\t")
-    keys = [key.toString() for key in action.shortcuts()] + [held] * bool(held)
+    native = QKeySequence.SequenceFormat.NativeText
+    keys = [key.toString(native) for key in action.shortcuts()] + [held] * bool(held)
     return ", ".join(keys), action.property(DEED) or words.rstrip("…")
 
 
