@@ -116,7 +116,7 @@ _HOMES = {
     "core.quality": ("leave_one_out", "penalty_curve"),
     "core.repeatability": ("repeatability",),
     "core.settings": ("WarpSettings",),
-    "core.surface_distance": ("compare_surfaces",),
+    "core.surface_comparison": ("compare_surfaces",),
     "core.suspects": ("suspects",),
     "io.landmark_files": ("read_landmarks", "write_landmarks"),
     "io.meshes": ("MeshFile", "read_mesh", "write_mesh"),
