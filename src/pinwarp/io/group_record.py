@@ -212,7 +212,8 @@ def _joined(lines: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
     last: tuple[str, str] | None = None
     for key, text in lines:
         if key == "patch_around" and last is not None and last[0] == "patch":
-            yield "patch", f"around={text}\n{last[1]}"
+            # On one line, as it is written: some line ends are none to those who read lines.
+            yield "patch", f"around={' '.join(text.splitlines())}\n{last[1]}"
             last = None
             continue
         if last is not None:
