@@ -3,23 +3,15 @@
 from __future__ import annotations
 
 from qtpy.QtCore import QEvent, QObject, Qt, Signal
-from qtpy.QtWidgets import (
-    QFrame,
-    QHBoxLayout,
-    QLabel,
-    QProgressBar,
-    QPushButton,
-    QSizePolicy,
-    QWidget,
-)
+from qtpy.QtWidgets import QWidget
 
-from pinwarp.gui.style import theme
+from pinwarp.gui.style.bar import Bar
 from pinwarp.gui.suggesting import words
 
 _KEYS = (QEvent.Type.ShortcutOverride, QEvent.Type.KeyPress)
 
 
-class SuggestBar(QFrame):
+class SuggestBar(Bar):
     """Says one thing at a time; asks to begin, to stop, or to take the destination for a part.
 
     ``left`` is emitted by its last button and by Esc, whatever is shown but the offer, which Esc
@@ -37,41 +29,20 @@ class SuggestBar(QFrame):
     left = Signal()
 
     def __init__(self, window: QWidget) -> None:
-        super().__init__()
-        self.setFrameShape(QFrame.Shape.NoFrame)
-        self.setAutoFillBackground(True)
-        self.words = QLabel()
-        self.words.setTextFormat(Qt.TextFormat.RichText)
+        super().__init__(progress_width=150)
         self.words.setWordWrap(True)
-        # Long words must not push the table aside.
-        self.words.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.progress = QProgressBar()
-        self.progress.setFixedWidth(150)
-        self.suggest = self._button("Suggest All", "", self.suggest_requested)
-        self.part = self._button(
+        self.suggest = self.add_button("Suggest All", "", self.suggest_requested)
+        self.part = self.add_button(
             "It Is Only a Part",
             "The destination is a cut or broken bone: look for the part that is there",
             self.part_requested,
         )
-        self.close_offer = self._button("Not Now", "Not offered again in this session", self.closed)
-        self.leave = self._button("", "", self.left)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(12, 4, 8, 4)
-        row.setSpacing(theme.SPACE)
-        row.addWidget(self.words, 1)
-        for widget in (self.progress, self.suggest, self.part, self.close_offer, self.leave):
-            row.addWidget(widget)
+        self.close_offer = self.add_button(
+            "Not Now", "Not offered again in this session", self.closed
+        )
+        self.leave = self.add_button("", "", self.left)
         self._takes_escape = False
-        self.hide()
         window.installEventFilter(self)
-
-    def _button(self, text: str, tip: str, signal: Signal) -> QPushButton:
-        button = QPushButton(text)
-        button.setToolTip(tip)
-        # The keyboard stays with the bones.
-        button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        button.clicked.connect(lambda _checked=False: signal.emit())
-        return button
 
     # What is shown
 
@@ -81,16 +52,14 @@ class SuggestBar(QFrame):
 
     def show_busy(self, share: float, stage: str) -> None:
         """Show how far the first guess is."""
-        self.progress.setRange(0, 100)
         self.progress.setFormat("%p%")
-        self.progress.setValue(round(100 * share))
+        self.show_share(round(100 * share), 100)
         self._show(stage[:1].upper() + stage[1:], self.progress, self.leave, leaving="Cancel")
 
     def show_going(self, text: str, done: int, total: int) -> None:
         """Show which landmark is next, and how many are placed."""
-        self.progress.setRange(0, total)
         self.progress.setFormat("%v of %m")
-        self.progress.setValue(done)
+        self.show_share(done, total)
         self._show(text, self.progress, self.leave, leaving="Leave")
 
     def show_problem(self, text: str, *, may_be_part: bool) -> None:
@@ -106,8 +75,7 @@ class SuggestBar(QFrame):
     def _show(self, text: str, *widgets: QWidget, leaving: str = "") -> None:
         if text != self.words.text():
             self.words.setText(text)
-        for widget in (self.progress, self.suggest, self.part, self.close_offer, self.leave):
-            widget.setVisible(widget in widgets)
+        self.only(*widgets)
         self.leave.setText(leaving)
         self.leave.setToolTip({"Cancel": "Esc", "Leave": f"Esc: {words.LEFT}"}.get(leaving, "Esc"))
         self._takes_escape = bool(leaving)

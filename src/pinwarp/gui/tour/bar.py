@@ -2,51 +2,26 @@
 
 from __future__ import annotations
 
-from qtpy.QtCore import QEvent, QObject, QRect, Qt, Signal
-from qtpy.QtWidgets import (
-    QFrame,
-    QHBoxLayout,
-    QLabel,
-    QProgressBar,
-    QPushButton,
-    QSizePolicy,
-    QWidget,
-)
+from qtpy.QtCore import QEvent, QObject, QRect, Signal
+from qtpy.QtWidgets import QPushButton, QWidget
 
-from pinwarp.gui.style import theme
+from pinwarp.gui.style.bar import Bar
 
 # Below the middle of an empty view, where a plate says what may be dropped there.
 _BELOW_MIDDLE = 76
 
 
-class TourBar(QFrame):
+class TourBar(Bar):
     """Says what is to be done; asks to skip a step and to leave."""
 
     skip_requested = Signal()
     left = Signal()
 
     def __init__(self) -> None:
-        super().__init__()
-        self.setFrameShape(QFrame.Shape.NoFrame)
-        self.setAutoFillBackground(True)
-        self.words = QLabel(textFormat=Qt.TextFormat.RichText, wordWrap=True)
-        # Long words must not push the table aside.
-        self.words.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.progress = QProgressBar(format="%v of %m")
-        self.progress.setFixedWidth(110)
-        self.skip = QPushButton("Skip", toolTip="Go on to the next step")
-        self.leave = QPushButton(toolTip="Help > Take the Tour goes on where you left")
-        for button, signal in ((self.skip, self.skip_requested), (self.leave, self.left)):
-            # The keyboard stays with the bones.
-            button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-            button.clicked.connect(lambda _checked=False, signal=signal: signal.emit())
-        row = QHBoxLayout(self)
-        row.setContentsMargins(12, 6, 8, 6)
-        row.setSpacing(theme.SPACE)
-        row.addWidget(self.words, 1)
-        for widget in (self.progress, self.skip, self.leave):
-            row.addWidget(widget)
-        self.hide()
+        super().__init__(progress_width=110)
+        self.words.setWordWrap(True)
+        self.skip = self.add_button("Skip", "Go on to the next step", self.skip_requested)
+        self.leave = self.add_button("", "Help > Take the Tour goes on where you left", self.left)
 
     def show_step(self, words: str, number: int, total: int) -> None:
         """Ask for a step.
@@ -61,8 +36,7 @@ class TourBar(QFrame):
             How many there are.
         """
         self.words.setText(words)
-        self.progress.setRange(0, total)
-        self.progress.setValue(number)
+        self.show_share(number, total)
         self.skip.setVisible(number < total)
         self.leave.setText("Leave" if number < total else "Close")
         self.show()
