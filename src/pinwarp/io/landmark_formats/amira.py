@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Side
-from pinwarp.io.landmark_formats.lines import landmark_on, one_line, three_numbers
+from pinwarp.io.landmark_formats.lines import landmark_on, three_numbers
 from pinwarp.io.landmark_formats.reading import DefaultName, Gathering, LandmarkReading
 from pinwarp.io.landmark_formats.writing import (
     Holds,
@@ -152,11 +152,11 @@ def text_of(outgoing: Outgoing) -> Written:
     else:
         placed, notes = placed_only(outgoing.landmarks, outgoing.side)
         sets = [[numbers_text(position, "") for _, position in placed]]
-    return Written(_text(sets, outgoing.remarks), notes)
+    return Written(_text(sets, outgoing.commented("# ")), notes)
 
 
-def _text(sets: Sequence[Sequence[str]], remarks: Sequence[str]) -> str:
-    lines = ["# AmiraMesh 3D ASCII 2.0", *(f"# {one_line(remark)}" for remark in remarks)]
+def _text(sets: Sequence[Sequence[str]], comments: str) -> str:
+    lines = ["# AmiraMesh 3D ASCII 2.0", *comments.splitlines()]
     lines += ["", "", f"define Markers {len(sets[0])}", ""]
     lines += ["Parameters {", f"    NumSets {len(sets)},", '    ContentType "LandmarkSet"', "}", ""]
     for number in range(1, len(sets) + 1):

@@ -170,7 +170,7 @@ def text_of(outgoing: Outgoing) -> Written:
         placed, notes = placed_only(landmarks, side)
         rows = [(name, numbers_text(position, "")) for name, position in placed]
     points = [f' {numbers} "{_escaped(name)}"' for name, numbers in rows]
-    remarks = "".join(f"% {one_line(remark)}\n" for remark in outgoing.remarks)
+    remarks = outgoing.commented("% ")
     header = f"{_SIGNATURE}\n{remarks}Volumes = {2 if side is None else 1};\n\nPoints =\n"
     return Written(header + "\n".join(points) + ";\n", notes)
 

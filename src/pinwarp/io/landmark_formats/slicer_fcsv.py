@@ -187,8 +187,7 @@ def text_of(outgoing: Outgoing) -> Written:
     '1,500.0,0.0,1000.0,0,0,0,1,1,1,0,nasion,,'
     """
     placed = replace(outgoing, landmarks=in_millimetres(outgoing.landmarks, outgoing.unit))
-    remarks = "".join(f"# {one_line(remark)}\n" for remark in outgoing.remarks)
-    lines = [_OPENING_LINES + remarks + _COLUMNS_LINE]
+    lines = [_OPENING_LINES + outgoing.commented("# ") + _COLUMNS_LINE]
     missing = 0
     for landmark, position in zip(placed.landmarks, placed.places, strict=True):
         if position is None:

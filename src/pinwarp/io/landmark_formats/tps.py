@@ -240,7 +240,7 @@ def text_of(outgoing: Outgoing) -> Written:
         for group in outgoing.groups
     ]
     single = [row for name, row in rows.items() if name not in along]
-    comments = "".join(f"COMMENT={one_line(remark)}\n" for remark in outgoing.remarks)
+    comments = outgoing.commented("COMMENT=")
     return Written(specimen_text(single, curves, outgoing.title_or_side) + comments)
 
 

@@ -86,6 +86,21 @@ class Outgoing:
         assert self.side is not None, "pairs are refused before"
         return [landmark.position(self.side) for landmark in self.landmarks]
 
+    def commented(self, mark: str) -> str:
+        r"""Return the remarks as comments of a format, a line each.
+
+        Parameters
+        ----------
+        mark
+            What a comment begins with.
+
+        Examples
+        --------
+        >>> Outgoing((), remarks=("Made by\nhand",)).commented("# ")
+        '# Made by hand\n'
+        """
+        return "".join(f"{mark}{one_line(remark)}\n" for remark in self.remarks)
+
     @property
     def title_or_side(self) -> str:
         """What the specimen is called, or else the side."""
