@@ -111,6 +111,12 @@ class Action(QAction):
         self.renew()
 
 
+def name_and_held(action: QAction) -> tuple[str, str]:
+    """Return what an action is called, and the key that is held for it, behind a tab."""
+    name, _, held = action.text().replace("&", "").partition("\t")
+    return name, held
+
+
 def one_of(actions: Iterable[QAction], parent: QObject) -> list[QAction]:
     """Return actions of which one is checked at a time."""
     group = QActionGroup(parent)

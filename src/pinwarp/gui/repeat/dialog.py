@@ -194,7 +194,7 @@ class PrecisionDialog(QDialog):
 
     def _ask(self, **changes: object) -> None:
         self.say("")
-        before, self._asked = self._asked, replace(self._asked, **changes)  # type: ignore[arg-type]
+        before, self._asked = self._asked, replace(self._asked, **changes)  # type: ignore[arg-type]  # by name
         if before.paths != self._asked.paths:
             self.files.clear()
             self.files.addItems([str(path) for path in self._asked.paths])

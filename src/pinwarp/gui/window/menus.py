@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from qtpy.QtGui import QAction, QKeySequence
 from qtpy.QtWidgets import QMenu, QMenuBar, QWidget
 
-from pinwarp.gui.capability.action import PLACES, placed
+from pinwarp.gui.capability.action import PLACES, name_and_held, placed
 
 TITLES = ("&File", "&Edit", "&Place", "&Warp", "&View", "&Help")
 # The menus inside others: what each is called, and where it stands.
@@ -74,7 +74,7 @@ def make_menus(bar: QMenuBar, actions: Iterable[QAction]) -> list[QMenu]:
 def way_to(action: QAction) -> str:
     """Return where an action is found in the menus, such as ``"File > Export > Report"``."""
     place = str(action.property(PLACES) or "").partition(" ")[0].partition(".")[0]
-    words = [action.text().partition("\t")[0]]
+    words = [name_and_held(action)[0]]
     while place in INNER:
         title, at = INNER[place]
         words.insert(0, title)
@@ -92,7 +92,7 @@ def told(action: QAction, what: str) -> str:
     what
         ``"name"``, ``"keys"``, or nothing for the way to it and its first shortcut.
     """
-    name, _, held = action.text().replace("&", "").partition("\t")
+    name, held = name_and_held(action)
     shortcut = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
     keys = shortcut or held.removesuffix(" (hold)")
     if what == "name":

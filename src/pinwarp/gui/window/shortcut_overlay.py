@@ -18,7 +18,7 @@ from qtpy.QtGui import (
 )
 from qtpy.QtWidgets import QWidget
 
-from pinwarp.gui.capability.action import DEED
+from pinwarp.gui.capability.action import DEED, name_and_held
 from pinwarp.gui.scene.key_words import with_own_keys
 
 Lines = list[tuple[str, str]]
@@ -148,7 +148,7 @@ class ShortcutOverlay(QWidget):
 
 def _entry(action: QAction) -> tuple[str, str]:
     """Return the keys of an action and what it does; a key that is held stands behind a tab."""
-    words, _, held = action.text().replace("&", "").partition("\t")
+    words, held = name_and_held(action)
     native = QKeySequence.SequenceFormat.NativeText
     keys = [key.toString(native) for key in action.shortcuts()] + [held] * bool(held)
     return ", ".join(keys), action.property(DEED) or words.rstrip("…")
