@@ -161,6 +161,6 @@ def test_landmarks_in_another_frame_or_unit_are_flagged(pinwarp_command, tmp_pat
     write_session(path, fitted(sample, Side.DESTINATION, Fit(flips=True)))
     outcome = pinwarp_command("check", path, "--strict", exit_code=1)
     assert "! The destination landmarks lie" in outcome.stdout
-    assert "with x and y negated" in " ".join(outcome.stdout.split())
+    assert "With x and y negated" in " ".join(outcome.stdout.split())
     write_session(path, sample)
     assert "another frame" not in pinwarp_command("check", path, "--strict").stdout

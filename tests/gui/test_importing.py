@@ -11,6 +11,7 @@ from qtpy.QtTest import QTest
 from qtpy.QtWidgets import QApplication, QDialogButtonBox, QLabel
 from tests.gui.test_files import drop
 
+from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import Landmark, Side, scaled
 from pinwarp.core.mesh import Mesh
 from pinwarp.gui.files.documents import Opening
@@ -20,8 +21,9 @@ from pinwarp.io.landmark_files import write_landmarks
 from pinwarp.io.meshes import read_mesh, write_mesh
 from pinwarp.io.samples import assets_folder, sample_session
 from pinwarp.io.session_file import read_session
-from pinwarp.session.importing.fit import Fit
+from pinwarp.session.importing.fit import Fit, fitted
 from pinwarp.session.importing.landmarks import Pairing
+from pinwarp.session.mesh_units import scale_side
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
 BY_NAME, BY_ORDER, AS_NEW, AS_PASSENGERS = Pairing
@@ -322,7 +324,7 @@ def test_what_was_kept_is_listed_to_check_until_a_click_puts_it_right(half_done,
     panel = half_done.window.parts.findings.panel
     row = panel.rows[0]
     assert "The destination landmarks lie" in row.found.sentence
-    assert "another frame or unit" in row.found.sentence
+    assert "they are in another frame." in row.found.sentence
     assert row.remedy.text() == "Negate x and y"
     assert row.disable.isHidden()
     QTest.mouseClick(row.remedy, Qt.MouseButton.LeftButton)
@@ -333,6 +335,77 @@ def test_what_was_kept_is_listed_to_check_until_a_click_puts_it_right(half_done,
     half_done.trigger("undo")
     half_done.settle()
     assert "another frame" in panel.rows[0].found.sentence
+
+
+def test_what_was_kept_is_put_right_also_where_bones_in_metres_are_shown_in_millimetres(
+    user, bring
+):
+    user.open_sample()
+    metres = scale_side(scale_side(user.session, SOURCE, 0.001), DESTINATION, 0.001)
+    right = [x.destination for x in metres.landmarks]
+    off = fitted(metres, DESTINATION, LPS)
+    user.editor.replace_all(off, None)
+    user.settle()
+    assert user.editor.rulers.session.unit == "mm"
+    row = user.window.parts.findings.panel.rows[0]
+    assert row.remedy.text() == "Negate x and y"
+    assert " mm from their mesh" in row.found.sentence
+    QTest.mouseClick(row.remedy, Qt.MouseButton.LeftButton)
+    user.settle()
+    there = [x.destination for x in user.session.landmarks if x.destination is not None]
+    assert np.allclose(there, [x for x in right if x is not None], atol=1e-12)
+    user.trigger("undo")
+    assert user.session == off
+
+
+def test_a_mesh_exchanged_under_its_landmarks_is_listed_until_the_right_one_is_opened(
+    user, tmp_path
+):
+    user.open_sample()
+    panel = user.window.parts.findings.panel
+    mesh = user.session.mesh(DESTINATION)
+    other = tmp_path / "other.ply"
+    write_mesh(other, mesh.with_vertices(mesh.vertices[:, [1, 2, 0]] + 900.0))
+    user.window.parts.documents.open_mesh(DESTINATION, other)
+    user.settle()
+    row = panel.rows[0]
+    assert "is it the one that they were placed on?" in row.found.sentence
+    assert row.remedy.text() == "Open Mesh…"
+    # Whoever goes from finding to finding comes past it, and to the next one.
+    user.press(Qt.Key.Key_N, Qt.KeyboardModifier.ShiftModifier)
+    user.dialogs.opens = [assets_folder() / "femur_subject.ply"]
+    QTest.mouseClick(row.remedy, Qt.MouseButton.LeftButton)
+    user.settle()
+    assert user.dialogs.opens == []
+    assert not any("placed on" in row.found.sentence for row in panel.rows)
+    assert user.editor.undo_label == "Open destination mesh"
+
+
+def test_units_that_were_left_are_listed_with_the_ways_to_scale(user):
+    user.open_sample()
+    apart = scale_side(user.session, SOURCE, 0.001)
+    user.editor.replace_all(apart, None)
+    user.settle()
+    panel = user.window.parts.findings.panel
+    (row,) = [x for x in panel.rows if x.found.finding.kind is FindingKind.UNITS]
+    assert "worth knowing" in panel.header.text()
+    assert row.remedy.text() == "Scale"
+    first, second = row.which.actions()
+    assert first.text() == "Scale the Source by 1,000"
+    assert second.text() == "Scale the Destination by 1/1,000"
+
+    def pick():
+        QTest.keyClick(row.which, Qt.Key.Key_Down)
+        QTest.keyClick(row.which, Qt.Key.Key_Return)
+
+    QTimer.singleShot(50, row.which, pick)
+    QTest.mouseClick(row.remedy, Qt.MouseButton.LeftButton)
+    user.settle()
+    assert user.editor.undo_label == "Scale source by 1,000"
+    assert user.session.mesh(SOURCE).diagonal > 100
+    assert not any(x.found.finding.kind is FindingKind.UNITS for x in panel.rows)
+    user.trigger("undo")
+    assert user.session == apart
 
 
 def test_pairs_are_judged_on_either_side(user, bring):

@@ -54,12 +54,14 @@ class FindingKind(StrEnum):
     ISOLATED = "isolated"
     SUGGESTED = "suggested"
     ELSEWHERE = "elsewhere"
+    FAR = "far from the mesh"
+    UNITS = "different units"
 
     @property
     def severity(self) -> Severity:
         """How bad it is: what lists, marks, their order and strict checks go by."""
         match self:
-            case FindingKind.WORTH_A_LOOK | FindingKind.ISOLATED:
+            case FindingKind.WORTH_A_LOOK | FindingKind.ISOLATED | FindingKind.UNITS:
                 return Severity.REMARK
             case (
                 FindingKind.CLOSE
@@ -67,6 +69,7 @@ class FindingKind(StrEnum):
                 | FindingKind.PLANAR
                 | FindingKind.POLE
                 | FindingKind.SUGGESTED
+                | FindingKind.FAR
             ):
                 return Severity.WARNING
             case _:
@@ -92,12 +95,14 @@ class Finding:
         worth a look, the chance that a set without a mistake shows as much; for an isolated
         landmark the distance to the nearest; for a mirrored set what a reflection leaves of the
         misfit, for suggested destinations how many there are. For landmarks elsewhere, in another
-        frame or unit than their mesh, the median distance from it.
+        frame or unit than their mesh, or far from it, the median distance from it; for meshes in
+        different units how many times as large as the source the destination is.
     others
         Further figures (mesh units): for a displaced pair, either of two and what is worth a look
         how far it lies from where the other pairs expect it and how far is usual there; for an
         isolated landmark its leave-one-out error; for suggested destinations of how many they are,
-        for landmarks elsewhere their distance when they are read right.
+        for landmarks elsewhere their distance when they are read right, for those far from their
+        mesh how large it is.
     """
 
     kind: FindingKind
@@ -212,6 +217,15 @@ class Finding:
                     f"The landmarks lie {length} from their mesh in the median, but {other} when "
                     "they are read in another frame or unit."
                 )
+            case FindingKind.FAR:
+                return (
+                    f"The landmarks lie {length} from their mesh in the median, and it is {other} "
+                    "across: is it the one that they were placed on?"
+                )
+            case FindingKind.UNITS:
+                larger, smaller = ("destination", "source")[:: 1 if self.value > 1 else -1]
+                times = max(self.value, 1 / self.value)
+                return f"The {larger} mesh is {times:,.0f} times as large as the {smaller}."
 
 
 def _who(names: Sequence[str]) -> str:

@@ -21,6 +21,8 @@ UNLIKELY_RATIO = 50.0
 # to anybody who compares a mouse with a man.
 _FACTORS = (100.0, 1000.0)
 _LIKELY = 3.0
+# By what a length in metres is multiplied.
+_SMALLER = {100.0: "centimetres", 1000.0: "millimetres"}
 
 
 def likely_unit(mesh: Mesh) -> str:
@@ -73,6 +75,55 @@ def unit_factor(session: Session) -> float | None:
             if 1 / _LIKELY < ratio / each < _LIKELY:
                 return each
     return None
+
+
+def scalings(session: Session) -> dict[Side, float]:
+    """Return what either side is multiplied by to be in the unit of the other; see there.
+
+    Examples
+    --------
+    >>> scalings(Session())
+    {}
+    """
+    factor = unit_factor(session)
+    return {} if factor is None else {Side.SOURCE: factor, Side.DESTINATION: 1 / factor}
+
+
+def scaling_words(what: str, factor: float) -> str:
+    """Say what a scaling does.
+
+    Examples
+    --------
+    >>> scaling_words("the Source", 1000), scaling_words("source", 0.001)
+    ('Scale the Source by 1,000', 'Scale source by 1/1,000')
+    """
+    by = f"{factor:,.0f}" if factor > 1 else f"1/{1 / factor:,.0f}"
+    return f"Scale {what} by {by}"
+
+
+def size_words(session: Session) -> tuple[str, ...]:
+    """Say that the meshes must be in different units, where they are, and what that leads to.
+
+    Returns
+    -------
+    tuple of str
+        That one is larger, which units they seem to be in where one can tell, and what becomes of
+        them as they are; nothing where they may be in one unit.
+    """
+    ratio, factor = size_ratio(session), unit_factor(session)
+    if ratio is None:
+        return ()
+    sizes = [mesh.diagonal for side in Side if (mesh := session.mesh(side)) is not None]
+    larger = Side.DESTINATION if ratio > 1 else Side.SOURCE
+    words = [
+        f"The {larger.value} is {max(sizes) / min(sizes):,.0f} times as large as the "
+        f"{larger.other.value}: {max(sizes):.4g} and {min(sizes):.4g} across."
+    ]
+    if factor is not None:
+        smaller = _SMALLER[max(factor, 1 / factor)]
+        words.append(f"One seems to be in metres and the other in {smaller}.")
+    left = "the warp takes care of it, and what is exported is in the destination's unit."
+    return (*words, f"Left as they are, {left}")
 
 
 def unit_on(session: Session, side: Side) -> str:

@@ -39,11 +39,8 @@ from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.importing.landmarks import Pairing
 from pinwarp.session.keeping.recovery import OtherWindow
-from pinwarp.session.mesh_units import scale_side, size_ratio, unit_factor
+from pinwarp.session.mesh_units import scale_side, scaling_words, scalings, size_words
 from pinwarp.session.session import Session
-
-# By what a length in metres is multiplied.
-_SMALLER = {100.0: "centimetres", 1000.0: "millimetres"}
 
 
 @dataclass(frozen=True)
@@ -274,41 +271,29 @@ class Documents(Capability):
     def _compare_sizes(self, side: Side) -> None:
         """Ask what to do where a new mesh must be in another unit than the other one."""
         session = self._editor.committed
-        sizes = [mesh.diagonal for each in Side if (mesh := session.mesh(each)) is not None]
-        ratio, factor = size_ratio(session), unit_factor(session)
-        if ratio is None:
+        told, ways = size_words(session), scalings(session)
+        if not told:
             return
-        larger = Side.DESTINATION if ratio > 1 else Side.SOURCE
-        title = "Different units?"
-        text = (
-            f"The {larger.value} is {max(sizes) / min(sizes):,.0f} times as large as the "
-            f"{larger.other.value}: {max(sizes):.4g} and {min(sizes):.4g} across."
-        )
-        left = (
-            "Left as they are, the warp takes care of it, and what is exported is in the "
-            "destination's unit."
-        )
-        if factor is None:
+        title, text, left = "Different units?", told[0], told[-1]
+        if not ways:
             self._tasks.dialogs.tell(title, f"{text}\n\n{left}")
             return
         # The new one first: what was there before stays as it is.
-        factors = {Side.SOURCE: factor, Side.DESTINATION: 1 / factor}
         sides = (side, side.other)
         answer = self._tasks.dialogs.ask_choice(
             title,
             text,
-            f"One seems to be in metres and the other in {_SMALLER[max(factor, 1 / factor)]}. "
-            "Scaling takes the landmarks of that side along; the file stays as it is, and the "
-            f"session remembers the factor.\n\n{left}",
+            f"{told[1]} Scaling takes the landmarks of that side along; the file stays as it is, "
+            f"and the session remembers the factor.\n\n{left}",
             [
-                *(f"Scale the {each.value.capitalize()} {_by(factors[each])}" for each in sides),
+                *(scaling_words(f"the {each.value.capitalize()}", ways[each]) for each in sides),
                 "Leave Both",
             ],
         )
         if answer < len(sides):
             chosen = sides[answer]
-            scaled = scale_side(self._editor.committed, chosen, factors[chosen])
-            self._editor.commit(scaled, f"Scale {chosen.value} {_by(factors[chosen])}")
+            scaled = scale_side(self._editor.committed, chosen, ways[chosen])
+            self._editor.commit(scaled, scaling_words(chosen.value, ways[chosen]))
 
     def ask_and_open_session(self) -> None:
         """Ask for a session and open it."""
@@ -377,7 +362,3 @@ def _mesh_summary(file: MeshFile) -> str:
     text = f"{file.path.name}: {vertices}, {triangles}"
     # All of it stands by the mesh's name, too.
     return ". ".join((text, " ".join(file.notes))) if file.notes else text
-
-
-def _by(factor: float) -> str:
-    return f"by {factor:,.0f}" if factor > 1 else f"by 1/{1 / factor:,.0f}"

@@ -25,8 +25,10 @@ from qtpy.QtWidgets import (
 from pinwarp.core.findings import FindingKind
 from pinwarp.gui.style import theme
 from pinwarp.gui.table.columns import finding_icon
+from pinwarp.session.judging.different_units import DifferentUnits
 from pinwarp.session.judging.elsewhere import Elsewhere
 from pinwarp.session.judging.quality import NamedFinding
+from pinwarp.session.mesh_units import scaling_words
 
 # What is put right by placing a landmark anew, if it is wrong.
 _REPLACED = (FindingKind.DISPLACED, FindingKind.EITHER, FindingKind.WORTH_A_LOOK)
@@ -46,6 +48,7 @@ class FindingRow(QFrame):
     swap_requested = Signal()
     mirror_requested = Signal()
     reading_requested = Signal()
+    scale_requested = Signal(object)
     replace_requested = Signal(str)
     disable_requested = Signal(list)
 
@@ -95,9 +98,14 @@ class FindingRow(QFrame):
         elif kind is FindingKind.MIRRORED and mirror_axis:
             remedy = f"Mirror Across {mirror_axis.upper()}"
             tip = f"Mirror the source across {mirror_axis}: a left bone becomes a right one"
-        elif isinstance(found, Elsewhere):
+        elif isinstance(found, Elsewhere) and found.fit is not None:
             remedy = found.fit.action
             tip = f"Read all {found.side.value} landmarks another way; their mesh stays"
+        elif isinstance(found, Elsewhere):
+            remedy = "Open Mesh…"
+            tip = f"Open the mesh that the {found.side.value} landmarks were placed on"
+        elif isinstance(found, DifferentUnits) and found.ways:
+            remedy, tip = "Scale", "Bring one mesh to the unit of the other, with its landmarks"
         elif kind in _REPLACED:
             remedy, tip = "Re-place", f"Show where the other pairs expect {' or '.join(names)}"
         self._show_button(self.remedy, remedy, tip)
@@ -109,6 +117,7 @@ class FindingRow(QFrame):
         )
         if self.found is None or (names, kind) != (self.found.names, self.found.finding.kind):
             self._fill_choice(names, kind)
+        self._fill_which(found)
         if self.found is None or found.sentence != self.found.sentence:
             self.sentence.setText(_breakable(found.sentence))
             self.setAccessibleName(found.sentence)
@@ -139,13 +148,25 @@ class FindingRow(QFrame):
             action.triggered.connect(
                 lambda _checked=False, chosen=chosen: self.disable_requested.emit(chosen)
             )
+
+    def _fill_which(self, found: NamedFinding) -> None:
+        """Let the remedy ask which one, where there are several."""
+        if found == self.found:
+            return
         self.which.clear()
-        self.remedy.setMenu(self.which if kind is FindingKind.EITHER else None)
-        for name in names if kind is FindingKind.EITHER else ():
-            action = self.which.addAction(name.replace("&", "&&"))
-            action.triggered.connect(
-                lambda _checked=False, name=name: self.replace_requested.emit(name)
-            )
+        if found.finding.kind is FindingKind.EITHER:
+            for name in found.names:
+                action = self.which.addAction(name.replace("&", "&&"))
+                action.triggered.connect(
+                    lambda _checked=False, name=name: self.replace_requested.emit(name)
+                )
+        elif isinstance(found, DifferentUnits):
+            for side, factor in found.ways:
+                words = scaling_words(f"the {side.value.capitalize()}", factor)
+                self.which.addAction(words).triggered.connect(
+                    lambda _checked=False, side=side: self.scale_requested.emit(side)
+                )
+        self.remedy.setMenu(None if self.which.isEmpty() else self.which)
 
     def set_current(self, current: bool) -> None:
         """Say whether its landmarks are the selected ones."""
@@ -233,6 +254,7 @@ class FindingsPanel(QWidget):
     swap_requested = Signal(object)
     mirror_requested = Signal(str)
     reading_requested = Signal(object)
+    scale_requested = Signal(object)
     replace_requested = Signal(str)
     disable_requested = Signal(object, list)
 
@@ -322,6 +344,7 @@ class FindingsPanel(QWidget):
         row.swap_requested.connect(lambda: self.swap_requested.emit(row.found))
         row.mirror_requested.connect(lambda: self.mirror_requested.emit(self._axis))
         row.reading_requested.connect(lambda: self.reading_requested.emit(row.found))
+        row.scale_requested.connect(self.scale_requested)
         row.replace_requested.connect(self.replace_requested)
         row.disable_requested.connect(lambda names: self.disable_requested.emit(row.found, names))
 
@@ -381,8 +404,14 @@ def heading(found: Sequence[NamedFinding]) -> str:
     """
     grave = sum(one.finding.is_grave for one in found)
     worth = sum(one.finding.kind is FindingKind.WORTH_A_LOOK for one in found)
-    isolated = len(found) - grave - worth
-    counts = ((grave, "to check"), (worth, "worth a look"), (isolated, "isolated"))
+    isolated = sum(one.finding.kind is FindingKind.ISOLATED for one in found)
+    known = len(found) - grave - worth - isolated
+    counts = (
+        (grave, "to check"),
+        (worth, "worth a look"),
+        (known, "worth knowing"),
+        (isolated, "isolated"),
+    )
     return ", ".join(f"{count} {words}" for count, words in counts if count)
 
 

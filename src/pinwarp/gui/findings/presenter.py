@@ -24,14 +24,15 @@ from pinwarp.gui.warp.quality import QualityPresenter
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.importing.fit import fitted
+from pinwarp.session.judging.different_units import different_units
 from pinwarp.session.judging.elsewhere import Elsewhere, MeshGuard
 from pinwarp.session.judging.quality import NamedFinding, Quality, judged_at, named_findings
 from pinwarp.session.judging.suggested import about_suggested
+from pinwarp.session.mesh_units import scale_side, scaling_words, scalings
 from pinwarp.session.naming import in_words
 from pinwarp.session.session import Session
 from pinwarp.session.warp.pair_names import pair_names
 
-# These are about the penalty and the solve, and told where the penalty is set.
 # What the pairs say about one another, at penalty 0.
 _OF_PAIRS = (
     FindingKind.DISPLACED,
@@ -40,6 +41,7 @@ _OF_PAIRS = (
     FindingKind.MIRRORED,
     FindingKind.WORTH_A_LOOK,
 )
+# These are about the penalty and the solve, and told where the penalty is set.
 _TOLD_ELSEWHERE = (FindingKind.NEARLY_PLANAR, FindingKind.POLE)
 
 
@@ -64,6 +66,8 @@ class FindingsPresenter(Capability):
         Look at landmarks.
     undo_key
         Which key undoes a remedy.
+    open_mesh
+        Asks for a mesh and opens it on a side.
     say
         Says a sentence in passing.
     """
@@ -79,6 +83,7 @@ class FindingsPresenter(Capability):
         reviewing: Reviewing,
         views: ViewControls,
         undo_key: str,
+        open_mesh: Callable[[Side], None],
         say: Callable[[str], None],
     ) -> None:
         self._editor = editor
@@ -90,8 +95,10 @@ class FindingsPresenter(Capability):
         self._reviewing = reviewing
         self._views = views
         self._undo_key = undo_key
+        self._open_mesh = open_mesh
         self._say = say
         self._found: tuple[NamedFinding, ...] = ()
+        self._last: NamedFinding | None = None
         self._astray: tuple[Elsewhere, ...] = ()
         self._looked_at: object = None
         self._guard = LatestWins(_looked)
@@ -117,6 +124,7 @@ class FindingsPresenter(Capability):
         self.panel.swap_requested.connect(self._swap)
         self.panel.mirror_requested.connect(bones.mirror)
         self.panel.reading_requested.connect(self._read_otherwise)
+        self.panel.scale_requested.connect(self._scale)
         self.panel.replace_requested.connect(self._show_expected)
         self.panel.disable_requested.connect(self._disable)
         maps.survey_shown.connect(self.fold_note.show_survey)
@@ -182,8 +190,8 @@ class FindingsPresenter(Capability):
         places = (judged.source, judged.destination) if judged is not None else None
         astray = self._astray
         rulers = self._editor.rulers
-        about = (session.settings.penalty, rulers, session.source)
-        key = (session.landmarks, about, quality, folds, places, astray)
+        shown = (session.settings.penalty, rulers, session.source, session.destination)
+        key = (session.landmarks, shown, quality, folds, places, astray)
         if key == self._shown_for:
             return
         self._shown_for = key
@@ -191,7 +199,8 @@ class FindingsPresenter(Capability):
         if judged is not None:
             found += named_findings(folds, judged, session, rulers.session)
         # Folds come behind what causes them, what is only isolated last.
-        found = gravest_first((*(x.by(rulers) for x in astray), *found, *about_suggested(session)))
+        found = (*different_units(session), *found, *about_suggested(session))
+        found = gravest_first((*(x.by(rulers) for x in astray), *found))
         self._found = tuple(one for one in found if one.finding.kind not in _TOLD_ELSEWHERE)
         self._table.model.show_findings(
             # What is suggested has its sign as a state.
@@ -217,6 +226,7 @@ class FindingsPresenter(Capability):
 
     def _choose(self, found: NamedFinding) -> None:
         """Select the landmarks of a finding and look at them."""
+        self._last = found
         if found.finding.kind is FindingKind.SUGGESTED:
             self._reviewing.begin()
             return
@@ -229,7 +239,10 @@ class FindingsPresenter(Capability):
         if not self._found:
             return
         chosen = set(self._editor.selection.names)
-        here = [i for i, one in enumerate(self._found) if set(one.names) == chosen]
+        here = [i for i, one in enumerate(self._found) if one.names and set(one.names) == chosen]
+        # Several may be about all landmarks, and name none.
+        if not chosen and self._last in self._found:
+            here = [self._found.index(self._last)]
         following = (here[0] + 1) % len(self._found) if here else 0
         self._choose(self._found[following])
         if self._found[following].finding.kind is not FindingKind.SUGGESTED:
@@ -248,10 +261,23 @@ class FindingsPresenter(Capability):
             self._hand.swap_destinations(found.names)
 
     def _read_otherwise(self, found: Elsewhere) -> None:
-        if found in self._astray:
-            session = fitted(self._editor.committed, found.side, found.fit)
-            self._editor.commit(session, f"Correct {found.side.value} landmarks")
-            self._say(f"{found.fit.describe()}: {self._undo_key} undoes it.")
+        # Not the findings themselves: another ruler tells them in other words.
+        if (found.side, found.fit) not in [(one.side, one.fit) for one in self._astray]:
+            return
+        if found.fit is None:
+            self._open_mesh(found.side)
+            return
+        session = fitted(self._editor.committed, found.side, found.fit)
+        self._editor.commit(session, f"Correct {found.side.value} landmarks")
+        self._say(f"{found.fit.describe()}: {self._undo_key} undoes it.")
+
+    def _scale(self, side: Side) -> None:
+        session = self._editor.committed
+        ways = scalings(session)
+        if side in ways:
+            words = scaling_words(side.value, ways[side])
+            self._editor.commit(scale_side(session, side, ways[side]), words)
+            self._say(f"{words}, with its landmarks: {self._undo_key} undoes it.")
 
     def _show_expected(self, name: str) -> None:
         """Select a landmark to be placed anew, and show where the other pairs expect it."""

@@ -27,10 +27,9 @@ from pinwarp.core.lengths import Ruler
 from pinwarp.core.words import counted, listed
 from pinwarp.gui.importing.arrival_model import ArrivalModel
 from pinwarp.gui.style import theme
-from pinwarp.gui.style.lengths import distance_from_mesh
 from pinwarp.io.landmark_files import LandmarkReading
 from pinwarp.session.importing.asking import doubts_of
-from pinwarp.session.importing.fit import Fit
+from pinwarp.session.importing.fit import Fit, distance_from_mesh
 from pinwarp.session.importing.landmarks import (
     Arriving,
     ImportChoice,

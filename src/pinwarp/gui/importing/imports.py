@@ -13,12 +13,11 @@ from pinwarp.core.words import counted
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.importing.import_dialogs import ImportDialogs
-from pinwarp.gui.style.lengths import distance_from_mesh
 from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, FileTasks, Progress
 from pinwarp.io.landmark_files import LandmarkReading, read_landmarks
 from pinwarp.session.editor import Editor
 from pinwarp.session.importing.asking import is_plain
-from pinwarp.session.importing.fit import Fit, fits_of, fitted
+from pinwarp.session.importing.fit import Fit, distance_from_mesh, fits_of, fitted
 from pinwarp.session.importing.landmarks import (
     Arriving,
     ImportChoice,

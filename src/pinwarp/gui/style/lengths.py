@@ -4,11 +4,6 @@ from __future__ import annotations
 
 import math
 
-from pinwarp.core.lengths import Ruler
-
-# Nobody places landmarks closer to a bone than this share of its size.
-_ON_MESH = 1e-4
-
 
 def round_length(longest: float) -> float:
     """Return the largest of 1, 2, 5, 10, ... that is no longer than this.
@@ -28,19 +23,6 @@ def round_length(longest: float) -> float:
         for digit in (1, 2, 5)
     ]
     return max(length for length in lengths if length <= longest)
-
-
-def distance_from_mesh(distance: float, size: float, unit: str) -> str:
-    """Return how far something lies from a mesh of some size, in words.
-
-    Examples
-    --------
-    >>> distance_from_mesh(312.4, 480.0, "mm"), distance_from_mesh(2.5e-7, 480.0, "mm")
-    ('312 mm from the mesh', 'on the mesh')
-    """
-    if distance <= _ON_MESH * size:
-        return "on the mesh"
-    return f"{Ruler(unit).text(distance, 3)} from the mesh"
 
 
 def ticks(largest: float) -> tuple[float, ...]:

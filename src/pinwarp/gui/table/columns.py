@@ -235,7 +235,7 @@ def finding_icon(findings: Sequence[NamedFinding]) -> QIcon:
     """Return the sign of the gravest of some findings."""
     if any(found.finding.is_grave for found in findings):
         return icon("warning", theme.WARNING_COLOUR)
-    if any(found.finding.kind is FindingKind.WORTH_A_LOOK for found in findings):
+    if any(found.finding.kind is not FindingKind.ISOLATED for found in findings):
         return icon("look", theme.QUIET_INK)
     return icon("isolated", theme.QUIET_INK)
 

@@ -148,6 +148,8 @@ class Parts:
             self.reviewing,
             self.views,
             self.undoing.undo.keys,
+            # What opens meshes stands on these.
+            lambda side: self.documents.ask_and_open_mesh(side),
             say,
         )
         self.comparison = PenaltyComparison(editor, scenes, say, frame)

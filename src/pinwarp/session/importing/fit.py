@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from pinwarp.core.groups import moved_group
 from pinwarp.core.landmarks import Landmark, Position, Side, flipped, positions, scaled
+from pinwarp.core.lengths import METRES, Ruler
 from pinwarp.core.positions import LARGEST_COORDINATE
 from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.session.session import Session
@@ -17,11 +18,17 @@ from pinwarp.session.session import Session
 # What looks wrong, as shares of the mesh's diagonal: landmarks are placed on bones, or near them.
 CLEARLY_OFF = 0.01
 FITTING = 0.03
+# So far from a bone nobody places half of its landmarks: they belong to another one.
+FAR = 0.25
 # How many times closer another reading must bring them.
 SHARPLY = 5.0
 # Landmarks spread over at least, and at most, so many diagonals. Closer together any would lie
 # near a bone that happens to lie where they shrink to.
 LEAST_SPREAD, LARGEST_SPREAD = 0.02, 3.0
+# Nobody places landmarks closer to a bone than this share of its size.
+_ON_MESH = 1e-4
+# So many metres are told as metres, whatever else lengths are told in.
+_BEYOND = 10.0
 _THOUSAND = 1000.0
 
 
@@ -165,6 +172,35 @@ def fits_of(landmarks: Iterable[Landmark], side: Side, index: SurfaceIndex) -> t
     return (stored, *(fit for fit in found if fit.distance <= SHARPLY * found[0].distance))
 
 
+def is_far(landmarks: Iterable[Landmark], side: Side, distance: float, size: float) -> bool:
+    """Whether landmarks can hardly belong to a mesh, however they are read.
+
+    Parameters
+    ----------
+    landmarks, side
+        The landmarks; those without a position on the side do not count.
+    distance
+        How far they lie from the mesh in the median.
+    size
+        How large that is.
+
+    Examples
+    --------
+    >>> marks = [Landmark("a", (0, 0, 0)), Landmark("b", (0.1, 0.2, 0))]
+    >>> is_far(marks, Side.SOURCE, 60.0, 200.0), is_far(marks, Side.SOURCE, 1.0, 200.0)
+    (True, False)
+
+    All in one place beside the mesh they are in another unit.
+
+    >>> is_far(marks, Side.SOURCE, 10.0, 200.0)
+    True
+    """
+    if distance <= CLEARLY_OFF * size:
+        return False
+    places = positions([x for x in landmarks if x.position(side) is not None], side)
+    return distance > FAR * size or not _spread_suits(places, size)
+
+
 def fitted(session: Session, side: Side, fit: Fit) -> Session:
     """Return the session with all landmarks, curves and patches of one side read in another way.
 
@@ -178,6 +214,38 @@ def fitted(session: Session, side: Side, fit: Fit) -> Session:
         landmarks=fit.applied(session.landmarks, side),
         groups=tuple(moved_group(group, side, fit.moved) for group in session.groups),
     )
+
+
+def distance_from_mesh(
+    distance: float, size: float, ruler: Ruler | str, mesh: str = "the mesh"
+) -> str:
+    """Return how far something lies from a mesh of some size, in words.
+
+    Parameters
+    ----------
+    distance, size
+        In one unit.
+    ruler
+        How lengths are told, or only the unit put behind them.
+    mesh
+        What the mesh is called.
+
+    Examples
+    --------
+    >>> distance_from_mesh(312.4, 480.0, "mm"), distance_from_mesh(2.5e-7, 480.0, "mm")
+    ('312 mm from the mesh', 'on the mesh')
+
+    Farther than any bone reaches, it is told in metres.
+
+    >>> distance_from_mesh(172.013, 0.3, Ruler("mm", 1000.0), "it")
+    '172 m from it'
+    """
+    if distance <= _ON_MESH * size:
+        return f"on {mesh}"
+    ruler = Ruler.of(ruler)
+    metres = ruler.shown(distance) * METRES.get(ruler.unit, 0.0)
+    far = Ruler("m").text(metres, 3) if metres >= _BEYOND else ruler.text(distance, 3)
+    return f"{far} from {mesh}"
 
 
 def _median(index: SurfaceIndex, places: NDArray[np.float64]) -> float:

@@ -16,6 +16,7 @@ from pinwarp.core.names import look_alike_notes
 from pinwarp.core.surface_comparison import DistanceFigures
 from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.io.meshes import MeshFile
+from pinwarp.session.judging.different_units import different_units
 from pinwarp.session.judging.elsewhere import Elsewhere, elsewhere
 from pinwarp.session.judging.quality import NamedFinding, judged_at, named_findings, quality_of
 from pinwarp.session.judging.suggested import about_suggested
@@ -107,8 +108,7 @@ class Check:
     groups
         The curves and patches whose semilandmarks slid.
     elsewhere
-        The sides whose landmarks seem to be in another frame or unit than their mesh; they are
-        among the findings, too.
+        The sides whose landmarks do not lie on their mesh; they are among the findings, too.
     findings
         What was noticed, the gravest first; what is wrong is flagged.
     notes
@@ -223,7 +223,8 @@ def check(session: Session | SolvedWarp, source_index: SurfaceIndex | None = Non
         [spreads.get(name, math.nan) for name in names],
     )
     folds, distances = warp.folds, warp.distances()
-    findings = [*quality.findings_in(session), *about_suggested(session)]
+    findings = [*different_units(session), *quality.findings_in(session)]
+    findings += about_suggested(session)
     if folds is not None:
         patches = (patch.finding for patch in folds.patches)
         findings += named_findings(patches, result.inputs, session)

@@ -1,4 +1,4 @@
-"""Landmarks in another frame or unit than their mesh: what checks, reports and the window say."""
+"""Landmarks that are not where their mesh is: what checks, reports and the window say."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pinwarp.core.findings import Finding, FindingKind
 from pinwarp.core.landmarks import Side
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.surface_distance import SurfaceIndex
-from pinwarp.session.importing.fit import Fit, fits_of
+from pinwarp.session.importing.fit import Fit, distance_from_mesh, fits_of, is_far
 from pinwarp.session.judging.quality import NamedFinding
 from pinwarp.session.rulers import Rulers, rulers_of
 from pinwarp.session.session import Session
@@ -19,28 +19,36 @@ from pinwarp.session.session import Session
 
 @dataclass(frozen=True)
 class Elsewhere(NamedFinding):
-    """A finding that the landmarks of a side do not lie on its mesh, but would if read otherwise.
+    """A finding that the landmarks of a side do not lie on its mesh.
 
     Attributes
     ----------
     side
         The side.
+    size
+        How large the mesh is.
     fit
-        How they would have to be read.
+        How they would have to be read to lie on it; None where no other reading helps.
     """
 
     side: Side
-    fit: Fit
+    size: float
+    fit: Fit | None
 
     def by(self, rulers: Rulers) -> Elsewhere:
         """Return the same, its lengths told by other rulers."""
-        ruler, words = rulers.on(self.side), self.fit.describe()
-        stored, read = (ruler.text(x, 3) for x in (self.finding.value, self.finding.others[0]))
-        sentence = (
-            f"The {self.side.value} landmarks lie {stored} from their mesh in the "
-            f"median, but {read} {words[0].lower()}{words[1:]}: they are in "
-            "another frame or unit."
-        )
+        ruler, fit = rulers.on(self.side), self.fit
+        far = distance_from_mesh(self.finding.value, self.size, ruler, "their mesh")
+        sentence = f"The {self.side.value} landmarks lie {far} in the median"
+        if fit is None:
+            sentence += (
+                f", and it is {ruler.text(self.size, 3)} across: is it the one that they were "
+                "placed on?"
+            )
+        else:
+            lie = distance_from_mesh(fit.distance, self.size, ruler, "it")
+            other = " and ".join(["frame"] * fit.flips + ["unit"] * (fit.factor != 1))
+            sentence += f". {fit.describe()} they lie {lie}: they are in another {other}."
         return replace(self, sentence=sentence)
 
 
@@ -79,12 +87,15 @@ def elsewhere(
         if index is None:
             continue
         stored, *others = fits_of(session.landmarks, side, index) or (Fit(),)
-        if not others:
+        size = mesh.diagonal
+        if others:
+            kind, fit, other = FindingKind.ELSEWHERE, others[0], others[0].distance
+        elif is_far(session.landmarks, side, stored.distance, size):
+            kind, fit, other = FindingKind.FAR, None, size
+        else:
             continue
-        fit = others[0]
-        finding = Finding(FindingKind.ELSEWHERE, (), stored.distance, (fit.distance,))
-        told = Elsewhere(finding, (), "", side, fit)
-        found.append(told.by(rulers_of(session)))
+        finding = Finding(kind, (), stored.distance, (other,))
+        found.append(Elsewhere(finding, (), "", side, size, fit).by(rulers_of(session)))
     return tuple(found)
 
 

@@ -22,6 +22,7 @@ from pinwarp.io.meshes import MeshFile
 from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.io.report import Report, ReportRow
 from pinwarp.session.judging.check import groups_of
+from pinwarp.session.judging.different_units import different_units
 from pinwarp.session.judging.elsewhere import elsewhere
 from pinwarp.session.judging.methods import methods_of
 from pinwarp.session.judging.quality import Quality, judged_at, penalty_advice, quality_of
@@ -106,6 +107,7 @@ def report_of(
         methods=methods_of(warp, quality),
         findings=(
             *(one.sentence for one in astray),
+            *(one.sentence for one in different_units(session)),
             *(finding.describe(names, ruler) for finding in found),
             *(f"{row.path}: {row.flag}" for row in elements if row.flag),
         ),

@@ -213,7 +213,9 @@ def _row(task: Task, result: Outcome | Exception) -> SummaryRow:
         | _digits(figures)
         | {
             "frame_or_unit": " ".join(
-                f"{one.side.value}: {one.fit.action}?" for one in checked.elsewhere
+                f"{one.side.value}: {one.fit.action}?"
+                for one in checked.elsewhere
+                if one.fit is not None
             ),
             "findings": " ".join(named.sentence for named in checked.findings),
             "notes": " ".join((*result.notes, *checked.notes)),
