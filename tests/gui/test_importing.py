@@ -26,7 +26,7 @@ from pinwarp.session.importing.landmarks import Pairing
 from pinwarp.session.mesh_units import scale_side
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
-BY_NAME, BY_ORDER, AS_NEW, AS_PASSENGERS = Pairing
+BY_NAME, BY_ORDER, AS_NEW, AS_PASSENGERS, ONLY_KNOWN = Pairing
 OK, CANCEL = QDialogButtonBox.StandardButton.Ok, QDialogButtonBox.StandardButton.Cancel
 LPS = Fit(flips=True)
 IN_METRES, IN_MILLIMETRES = Fit(factor=0.001), Fit(factor=1000.0)
@@ -799,3 +799,50 @@ def test_the_command_line_opens_a_session_with_passengers(user, tmp_path):
     user.settle()
     assert len(user.session.pairs) == 16
     assert [x.name for x in user.session.passengers[-3:]] == [f"station_{i}" for i in range(3)]
+
+
+def test_of_a_file_that_brings_more_only_the_known_names_can_be_taken(user, bring):
+    user.open_sample()
+    before = user.session
+    first = before.pairs[0]
+    moved = first.placed(SOURCE, tuple(np.add(first.source, 0.5).tolist()))
+
+    def look(dialog):
+        button = dialog.pairings[ONLY_KNOWN]
+        assert button.text() == "Only those &known here: 1 of 4"
+        choose(button)
+        assert happenings(dialog)[1:] == ["left out: none here is called so"] * 3
+        assert "3 are left out" in dialog.outcome.text()
+        press(dialog)
+
+    bring([moved, *stations()], SOURCE, look)
+    assert len(user.session.landmarks) == len(before.landmarks)
+    assert user.session.landmark(first.name).source == moved.source
+    assert "3 left out" in user.window.statusBar().currentMessage()
+    user.trigger("undo")
+    assert user.session == before
+
+
+def test_the_command_line_asks_too_where_names_are_strangers_to_a_paired_session(user, tmp_path):
+    path = tmp_path / "others.csv"
+    write_landmarks(path, [x.placed(DESTINATION, x.source) for x in stations()], DESTINATION)
+    user.dialogs.at_import = [lambda dialog: dialog.reject()]
+    user.window.parts.documents.open(Opening(session=sample_session(), destination_landmarks=path))
+    user.settle()
+    assert user.dialogs.at_import == []
+    assert len(user.session.landmarks) == len(read_session(sample_session()).landmarks)
+
+
+def test_strangers_dropped_one_after_the_other_are_each_asked_about(user, tmp_path):
+    user.open_sample()
+    before = user.session
+    paths = [tmp_path / f"{name}.csv" for name in ("one", "two")]
+    for path in paths:
+        marks = [replace(x, name=f"{path.stem}_{x.name}") for x in stations()]
+        write_landmarks(path, marks, SOURCE, unit="mm")
+    user.dialogs.at_import = [press, press]
+    drop(user.window.viewports[SOURCE], *paths)
+    user.settle()
+    assert user.dialogs.at_import == []
+    assert user.session.pairs == before.pairs
+    assert len(user.session.passengers) == len(before.passengers) + 6

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 
 import pytest
 from qtpy.QtCore import QMimeData, QPoint, QPointF, QRect, Qt
@@ -520,6 +521,47 @@ def test_pasted_rows_change_known_landmarks_and_add_new_ones_in_one_step(four):
     assert "line 4: 'oops' is not a number" in text + details
     four.undo("Paste 2 landmarks")
     assert four.session == before
+
+
+STRANGERS = "name\tsource_x\tsource_y\tsource_z\nsoleus\t1\t2\t3\nplantaris\t4\t5\t6\n"
+
+
+@pytest.fixture
+def paired(four):
+    marks = tuple(x for x in four.session.landmarks if x.is_pair)
+    four.user.editor.replace_all(replace(four.session, landmarks=marks), None)
+    four.user.settle()
+    return four
+
+
+@pytest.mark.parametrize(("answer", "role"), [(0, Role.PASSENGER), (1, Role.PAIR), (2, None)])
+def test_rows_that_would_wait_for_ever_are_asked_about(paired, answer, role):
+    before = paired.session
+    assert before.landmarks
+    QGuiApplication.clipboard().setText(STRANGERS)
+    paired.user.dialogs.choices = [answer]
+    paired.press(Qt.Key.Key_V, CONTROL)
+    ((_, text, _, labels),) = paired.user.dialogs.choice_questions
+    assert text.startswith("2 landmarks are not here yet")
+    assert labels == ["Add as Passengers", "Add as New Landmarks", "Cancel"]
+    if role is None:
+        assert paired.session is before
+        assert "nothing was changed" in paired.said()
+        return
+    assert [x.role for x in paired.session.landmarks[-2:]] == [role] * 2
+    paired.undo("Paste 2 landmarks")
+    assert paired.session == before
+
+
+def test_the_rows_that_are_known_can_be_pasted_alone(paired):
+    before = paired.session
+    name = before.landmarks[0].name
+    QGuiApplication.clipboard().setText(f"{STRANGERS}{name}\t7\t8\t9\n")
+    paired.user.dialogs.choices = [2]
+    paired.press(Qt.Key.Key_V, CONTROL)
+    assert paired.user.dialogs.choice_questions[0][3][2] == "Only the Others"
+    assert [x.name for x in paired.session.landmarks] == [x.name for x in before.landmarks]
+    assert paired.session.landmark(name).source == (7, 8, 9)
 
 
 def test_pasting_moves_no_locked_landmark(four):

@@ -29,12 +29,12 @@ from pinwarp.session.importing.landmarks import (
     default_pairing,
     imported,
 )
-from pinwarp.session.importing.words import left_waiting
+from pinwarp.session.importing.words import left_waiting, summary
 from pinwarp.session.naming import free_names
 from pinwarp.session.session import Session
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
-BY_NAME, BY_ORDER, AS_NEW, AS_PASSENGERS = Pairing
+BY_NAME, BY_ORDER, AS_NEW, AS_PASSENGERS, ONLY_KNOWN = Pairing
 
 
 def placed(names, side=SOURCE, shift=0.0):
@@ -222,6 +222,10 @@ def test_the_preview_and_the_import_agree(there, coming, side, pairing):
         before, then = session.landmark(arrival.target), after.landmark(arrival.target)
         changed = [s for s in Side if before is not None and before.position(s) != then.position(s)]
         match arrival.fate:
+            case Fate.LEFT_OUT:
+                assert pairing is ONLY_KNOWN
+                assert before is then is None
+                continue
             case Fate.NEW:
                 assert before is None
             case Fate.SAME:
@@ -347,3 +351,19 @@ def test_a_passenger_that_is_there_gets_its_place_and_a_pair_of_that_name_stays_
 def test_where_something_waits_nothing_is_taken_for_passengers(half):
     session = edits.remove_side(paired(), "p2", half)
     assert default_pairing(session, stations("x", "y", "z")) is not Pairing.AS_PASSENGERS
+
+
+def test_of_a_file_only_what_is_known_comes_in():
+    session = Session(landmarks=(Landmark("a", (0, 0, 0), (1, 1, 1)),))
+    arriving = file((Landmark("a", None, (2, 2, 2)), Landmark("b", None, (3, 3, 3))), DESTINATION)
+    choice = ImportChoice(ONLY_KNOWN)
+    assert can_pair(session, arriving, ONLY_KNOWN)
+    found = arrivals(session, arriving, choice)
+    assert [x.words for x in found] == [
+        "replaces the position of a",
+        "left out: none here is called so",
+    ]
+    assert summary(found) == "1 replaces a position (a), 1 is left out (b)."
+    after = imported(session, arriving, choice)
+    assert [(x.name, x.destination) for x in after.landmarks] == [("a", (2, 2, 2))]
+    assert not can_pair(Session(), arriving, ONLY_KNOWN)

@@ -18,6 +18,7 @@ from threadpoolctl import threadpool_limits
 from pinwarp.core import kernel, surface_distance
 from pinwarp.core.errors import words_of
 from pinwarp.core.landmarks import Side
+from pinwarp.core.words import some_of
 from pinwarp.gui.files.documents import Opening
 from pinwarp.gui.views.fast_view import default_format
 from pinwarp.gui.window.main_window import MainWindow
@@ -25,6 +26,8 @@ from pinwarp.gui.window.text_size import remembered_size, write_in
 from pinwarp.gui.window.window_dialogs import WindowDialogs
 from pinwarp.io.atomic import sweep
 from pinwarp.io.samples import sample_session
+from pinwarp.session.importing.landmarks import Arriving, ImportChoice
+from pinwarp.session.session import Session
 
 # Drawing a million triangles in software takes a while; a minute means that something hangs.
 _LONGEST_WAIT_MS = 60_000
@@ -47,6 +50,16 @@ class PrintedMessages(WindowDialogs):
         """Leave things as they are, which is the last choice, and say so."""
         self.tell(title, f"{text}\n{more}")
         return len(labels) - 1
+
+    def ask_import(self, session: Session, arriving: Arriving) -> ImportChoice | None:
+        """Leave out what nobody can be asked about, and say so."""
+        others = [x.name for x in arriving.landmarks if session.landmark(x.name) is None]
+        self.tell_error(
+            "Names that are not here",
+            f"{arriving.path.name} was left out: all landmarks are paired, and it brings others "
+            f"({some_of(others)}). Give it as --passengers if the warp is to carry them.",
+        )
+        return None
 
     def tell_error(self, title: str, text: str) -> None:
         """Print an error."""

@@ -302,6 +302,10 @@ def _pairing_words(session: Session, arriving: Arriving, pairing: Pairing) -> st
             return "As &passengers: the warp carries them, they are not paired"
         case Pairing.AS_PASSENGERS:
             return "As &passengers: only on the source"
+        case Pairing.ONLY_KNOWN:
+            known = {landmark.name for landmark in session.landmarks}
+            count = len(known.intersection(names))
+            return f"Only those &known here: {count:,} of {len(names):,}"
     return "As ne&w landmarks, whatever their names"
 
 

@@ -16,17 +16,20 @@ from pinwarp.gui.importing.import_dialogs import ImportDialogs
 from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, FileTasks, Progress
 from pinwarp.io.landmark_files import LandmarkReading, read_landmarks
 from pinwarp.session.editor import Editor
-from pinwarp.session.importing.asking import is_plain
+from pinwarp.session.importing.asking import brings_strangers, is_plain
 from pinwarp.session.importing.fit import Fit, distance_from_mesh, fits_of, fitted
 from pinwarp.session.importing.landmarks import (
     Arriving,
+    Fate,
     ImportChoice,
     Pairing,
+    arrivals,
     default_pairing,
     group_words,
     imported,
 )
 from pinwarp.session.mesh_units import unit_on
+from pinwarp.session.session import Session
 
 
 class LandmarkImports(Capability):
@@ -96,7 +99,8 @@ class LandmarkImports(Capability):
         path, side
             The file, and the side it belongs to.
         asking
-            Whether to ask before, where there is something to ask; else it is told after.
+            Whether to ask before, where there is something to ask; else it is told after. Names
+            that nobody here knows are asked about all the same, where everything is paired.
         pairing
             How its landmarks find those of the session, where that is known.
         """
@@ -162,7 +166,8 @@ class LandmarkImports(Capability):
         plain = is_plain(session, arriving)
         pairing = arriving.pairing or default_pairing(session, arriving)
         choice: ImportChoice | None = ImportChoice(pairing)
-        if asking and not plain:
+        asked = asking or (arriving.pairing is None and brings_strangers(session, arriving))
+        if asked and not plain:
             choice = self._tasks.dialogs.ask_import(session, arriving)
         if choice is None:
             self._tasks.said.emit("Cancelled; nothing was changed")
@@ -170,9 +175,9 @@ class LandmarkImports(Capability):
         # Meshes may have arrived while the question was open.
         before = self._editor.committed
         self._editor.commit(imported(before, arriving, choice), arriving.label)
-        words = (_report(arriving, choice), *group_words(before, arriving, choice))
+        words = (_report(before, arriving, choice), *group_words(before, arriving, choice))
         self._tasks.said.emit(" ".join(words))
-        if not asking:
+        if not asked:
             self._tell_after(arriving)
 
     def _choose(self, arriving: Arriving) -> None:
@@ -247,10 +252,13 @@ class LandmarkImports(Capability):
             self._editor.commit(session, f"Correct {side.value} landmarks")
 
 
-def _report(arriving: Arriving, choice: ImportChoice) -> str:
+def _report(session: Session, arriving: Arriving, choice: ImportChoice) -> str:
     """Say in one line what was brought in, and how."""
     reading = arriving.reading
     how = "" if choice.pairing is Pairing.BY_NAME else f", {choice.pairing.value}"
+    left = [x for x in arrivals(session, arriving, choice) if x.fate is Fate.LEFT_OUT]
+    if left:
+        how += f", {len(left):,} left out"
     parts = [f"{_count(arriving)} from {arriving.path.name} ({reading.format}){how}"]
     parts += [
         f"{side.value.capitalize()}: {fit.describe(reading.frame)}"

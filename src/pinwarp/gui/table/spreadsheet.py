@@ -19,7 +19,9 @@ from pinwarp.io.clipboard_table import (
 )
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
+from pinwarp.session.importing.pasting import as_passengers, halves
 from pinwarp.session.naming import in_words
+from pinwarp.session.session import Session
 
 
 class Spreadsheet:
@@ -51,11 +53,15 @@ class Spreadsheet:
         locked = {mark.name: mark for mark in session.landmarks if mark.locked or frozen}
         try:
             table = _without_moves(locked, read_clipboard(QGuiApplication.clipboard().text()))
-            pasted = edits.paste(session, table.rows)
+            rows = self._decided(session, table.rows)
+            if rows is None:
+                self._say("Cancelled; nothing was changed")
+                return []
+            pasted = edits.paste(session, rows)
         except PinwarpError as error:
             self._say(str(error))
             return []
-        names = [row.name for row in table.rows]
+        names = [row.name for row in rows]
         if names:
             self._editor.commit(pasted, f"Paste {in_words(names)}")
         if table.skipped:
@@ -63,6 +69,32 @@ class Spreadsheet:
         else:
             self._say(f"Pasted {in_words(names)}.")
         return names
+
+    def _decided(
+        self, session: Session, rows: tuple[PastedLandmark, ...]
+    ) -> tuple[PastedLandmark, ...] | None:
+        """Ask what becomes of landmarks that would wait for ever; None brings nothing in."""
+        new = halves(session, rows)
+        if not new:
+            return rows
+        others = tuple(row for row in rows if row not in new)
+        brought = tuple(as_passengers(row) if row in new else row for row in rows)
+        ways: dict[str, tuple[PastedLandmark, ...]] = {"Add as New Landmarks": rows}
+        if all("source" in row.values for row in new):
+            ways = {"Add as Passengers": brought, **ways}
+        if others:
+            ways["Only the Others"] = others
+        one = len(new) == 1
+        who = in_words([row.name for row in new])
+        answer = self._dialogs.ask_choice(
+            "Names that are not here",
+            f"{who} {'is' if one else 'are'} not here yet, and "
+            f"{'comes' if one else 'come'} with a position on one side only.",
+            f"All landmarks here are paired: {'this one' if one else 'these'} would wait for the "
+            "other side. A passenger is carried by the warp and needs none.",
+            [*ways, "Cancel"],
+        )
+        return [*ways.values(), None][answer]
 
     def _tell(self, names: Sequence[str], skipped: Sequence[SkippedLine]) -> None:
         count, first = len(skipped), skipped[0]

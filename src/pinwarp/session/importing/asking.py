@@ -51,6 +51,28 @@ def doubts_of(session: Session, arriving: Arriving) -> tuple[str, ...]:
     return tuple(doubts)
 
 
+def brings_strangers(session: Session, arriving: Arriving) -> bool:
+    """Whether a file for one side names landmarks that are not here, where all is paired.
+
+    They would be halves that wait for ever, so that somebody has to say what they are.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from pinwarp.core.landmarks import Landmark, Side
+    >>> from pinwarp.io.landmark_files import LandmarkReading
+    >>> session = Session(landmarks=(Landmark("head", (1, 2, 3), (4, 5, 6)),))
+    >>> reading = LandmarkReading((Landmark("soleus", (1, 2, 3)),), False, ())
+    >>> brings_strangers(session, Arriving(Path("a.csv"), reading, Side.SOURCE))
+    True
+    """
+    return (
+        arriving.side is not None
+        and is_paired(session)
+        and any(session.landmark(landmark.name) is None for landmark in arriving.landmarks)
+    )
+
+
 def is_plain(session: Session, arriving: Arriving) -> bool:
     """Whether an import leaves nothing to ask and nothing to tell before it is done.
 

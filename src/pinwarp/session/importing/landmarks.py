@@ -24,6 +24,7 @@ class Pairing(StrEnum):
     BY_ORDER = "by order"
     AS_NEW = "as new"
     AS_PASSENGERS = "as passengers"
+    ONLY_KNOWN = "only known names"
 
 
 class Fate(StrEnum):
@@ -34,6 +35,7 @@ class Fate(StrEnum):
     REPLACES = "replaces a position"
     SAME = "is there already"
     NEW = "is new"
+    LEFT_OUT = "is left out"
 
     @property
     def of_several(self) -> str:
@@ -44,6 +46,7 @@ class Fate(StrEnum):
             Fate.REPLACES: "replace a position",
             Fate.SAME: "are there already",
             Fate.NEW: "are new",
+            Fate.LEFT_OUT: "are left out",
         }[self]
 
 
@@ -199,8 +202,11 @@ def _are_stations(session: Session, arriving: Arriving) -> bool:
 def can_pair(session: Session, arriving: Arriving, pairing: Pairing) -> bool:
     """Whether a way of pairing is possible.
 
-    An order needs landmarks that wait for a position; passengers are on the source.
+    An order needs landmarks that wait for a position; passengers are on the source; of known names
+    there must be one.
     """
+    if pairing is Pairing.ONLY_KNOWN:
+        return any(session.landmark(landmark.name) for landmark in arriving.landmarks)
     if pairing is Pairing.AS_PASSENGERS:
         return arriving.side is Side.SOURCE and bool(arriving.landmarks)
     if pairing is not Pairing.BY_ORDER:
@@ -235,12 +241,13 @@ def arrivals(session: Session, arriving: Arriving, choice: ImportChoice) -> tupl
     looks = {visible(name): name for name in known}
     result = []
     for landmark, target in zip(landmarks, targets, strict=True):
-        there = known.get(target)
-        fate, words = (
-            _newcomer(landmark, target, looks.get(visible(target)))
-            if there is None
-            else _change(landmark, there, arriving.sides)
-        )
+        there, alike = known.get(target), looks.get(visible(target))
+        if there is not None:
+            fate, words = _change(landmark, there, arriving.sides)
+        elif choice.pairing is Pairing.ONLY_KNOWN:
+            fate, words = Fate.LEFT_OUT, _with_alike("left out: none here is called so", alike)
+        else:
+            fate, words = _newcomer(landmark, target, alike)
         result.append(Arrival(landmark, target, fate, words))
     return tuple(result)
 
@@ -289,7 +296,10 @@ def _renamed(session: Session, arriving: Arriving, choice: ImportChoice) -> list
     landmarks = _read(arriving, choice)
     names = [landmark.name for landmark in landmarks]
     targets = _targets(session, arriving.side, names, choice.pairing)
-    return [replace(x, name=name) for x, name in zip(landmarks, targets, strict=True)]
+    renamed = [replace(x, name=name) for x, name in zip(landmarks, targets, strict=True)]
+    if choice.pairing is Pairing.ONLY_KNOWN:
+        return [landmark for landmark in renamed if session.landmark(landmark.name)]
+    return renamed
 
 
 def _read(arriving: Arriving, choice: ImportChoice) -> tuple[Landmark, ...]:
@@ -305,7 +315,7 @@ def _targets(
     session: Session, side: Side | None, names: Sequence[str], pairing: Pairing
 ) -> list[str]:
     """Return the name in the session of each landmark that arrives."""
-    if pairing is Pairing.BY_NAME:
+    if pairing in (Pairing.BY_NAME, Pairing.ONLY_KNOWN):
         return list(names)
     if pairing is Pairing.AS_PASSENGERS:
         # One that is a passenger already gets its place; a pair stays what it is.
@@ -325,9 +335,11 @@ def _newcomer(landmark: Landmark, target: str, alike: str | None) -> tuple[Fate,
     words = what if target == landmark.name else f"{what}, called {target}"
     if landmark.source is None and landmark.destination is None:
         words += ", to be placed"
-    if alike is not None:
-        words += f", though it looks like {alike}"
-    return Fate.NEW, words
+    return Fate.NEW, _with_alike(words, alike)
+
+
+def _with_alike(words: str, alike: str | None) -> str:
+    return words if alike is None else f"{words}, though it looks like {alike}"
 
 
 def _change(landmark: Landmark, there: Landmark, sides: Sequence[Side]) -> tuple[Fate, str]:
