@@ -125,3 +125,29 @@ def test_a_picture_of_a_damaged_session_fails_with_its_reason(tmp_path):
     outcome = run(path, "--screenshot", tmp_path / "x.png", XDG_CONFIG_HOME=str(tmp_path))
     assert outcome.returncode == 1
     assert "bad.pinwarp.csv" in outcome.stderr
+
+
+@pytest.mark.parametrize(
+    "command", [[], ["open"], ["warp"], ["check"], ["suggest"], ["refine"], ["batch"], ["model"]]
+)
+def test_the_help_asks_for_no_value_of_a_flag(pinwarp_command, command):
+    told = pinwarp_command(*command, "--help").stdout
+    assert "--help" in told
+    assert "bool" not in told
+    assert "--no-" not in told
+
+
+def test_whoever_has_read_enough_is_told_of_no_mistake():
+    reading, writing = os.pipe()
+    os.close(reading)
+    with os.fdopen(writing, "w") as nobody:
+        outcome = subprocess.run(
+            [sys.executable, "-m", "pinwarp", "check", str(sample_session())],
+            stdout=nobody,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+    assert outcome.stderr == ""
+    assert outcome.returncode == 1

@@ -10,6 +10,7 @@ import pytest
 
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.words import with_article
 from pinwarp.io.meshes import MESH_SUFFIXES, read_mesh, write_mesh
 
 TETRAHEDRON = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2]])
@@ -63,7 +64,9 @@ def test_a_mesh_is_read_whatever_its_name_says(tmp_path: Path, suffix: str) -> N
         shutil.copy(tmp_path / f"a{suffix}", tmp_path / name)
         found = read_mesh(tmp_path / name)
         assert len(found.mesh.faces) == 3
-        assert found.notes == (f"It is a {suffix[1:].upper()} file, whatever its name says.",)
+        assert found.notes == (
+            f"It is {with_article(suffix[1:].upper())} file, whatever its name says.",
+        )
 
 
 def test_no_mesh_is_taken_for_something_else(tmp_path: Path) -> None:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 
 from pinwarp.cli.batch import batch
 from pinwarp.cli.check import check
@@ -23,8 +24,22 @@ from pinwarp.core.errors import PinwarpError, words_of
 OPEN = "open"
 
 
+class Command(TyperCommand):
+    """A command whose help tells no type of flags: they take no value."""
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write its help."""
+        _without_types(self.get_params(ctx))
+        super().format_help(ctx, formatter)
+
+
 class Commands(TyperGroup):
     """Commands, of which ``open`` need not be said; all errors are told on one line."""
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write its help."""
+        _without_types(self.get_params(ctx))
+        super().format_help(ctx, formatter)
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Put in the command where the first word is none."""
@@ -40,12 +55,26 @@ class Commands(TyperGroup):
             # Whose value it is, is said before; that it is one says nothing.
             error.message = error.message.replace("Value error, ", "")
             raise
+        except BrokenPipeError:
+            # Whoever read what is printed has enough: no mistake of anybody's.
+            raise
         except (PinwarpError, OSError) as error:
             tell_error(words_of(error))
             raise typer.Exit(BAD_USAGE) from None
         except KeyboardInterrupt:
             tell_error("Interrupted.")
             raise typer.Exit(INTERRUPTED) from None
+
+
+def _without_types(options: Iterable[Any]) -> None:
+    for option in options:
+        if getattr(option, "is_flag", False):
+            # The help of typer asks for it, and has no other way to leave it out.
+            vars(option)["display_type_rich"] = _no_type
+
+
+def _no_type(ctx: Any) -> None:
+    del ctx
 
 
 def make_app(open_window: OpenWindow) -> typer.Typer:
@@ -68,7 +97,7 @@ def make_app(open_window: OpenWindow) -> typer.Typer:
         """
         del version  # told before anything else
 
-    app.command(OPEN)(make_open(open_window))
+    app.command(OPEN, cls=Command)(make_open(open_window))
     for command in (warp, check, repeat, suggest, refine, convert, batch, model):
-        app.command()(command)
+        app.command(cls=Command)(command)
     return app

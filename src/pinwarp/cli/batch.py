@@ -85,6 +85,7 @@ def batch(
     suggest: Annotated[
         bool,
         typer.Option(
+            "--suggest",
             help="Suggest the landmarks that a subject lacks, from the shapes of the bones. "
             "NAME.pinwarp.csv then is the session in which to look at them: the next run warps the "
             "subject by what you made of it, and never replaces it. Subjects that the shapes "

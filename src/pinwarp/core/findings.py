@@ -26,7 +26,12 @@ class Severity(IntEnum):
 
 # A chance smaller than one in so many is no better known.
 RAREST = 1000
-_ON_LINE = ("on one line", "the line")
+# Where landmarks lie that span no, one or two directions, and what to place besides.
+_SPANS = (
+    ("at one place", "others elsewhere"),
+    ("on one line", "two away from the line"),
+    ("in one plane", "one off the plane"),
+)
 # Of more landmarks than this a sentence names the first, and says how many more there are.
 MOST_NAMED = 4
 
@@ -156,10 +161,10 @@ class Finding:
                     "far from the landmarks the warp is unreliable."
                 )
             case FindingKind.PLANAR:
-                where, off = ("in one plane", "the plane") if self.value > 1 else _ON_LINE
+                where, away = _SPANS[min(int(self.value), 2)]
                 return (
-                    f"The source landmarks lie {where}: off it they say nothing, and the warp is "
-                    f"only moved, turned and sized there. Place one off {off}."
+                    f"The source landmarks lie {where}: off it they say nothing, and the warp only "
+                    f"moves, turns and sizes what is there. Place {away}."
                 )
             case FindingKind.POLE:
                 return (

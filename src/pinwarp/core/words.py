@@ -19,6 +19,19 @@ def counted(count: int, one: str, many: str = "") -> str:
     return f"{count:,} {one if count == 1 else many or f'{one}s'}"
 
 
+def with_article(word: str) -> str:
+    """Return a word behind its a or an; a name of capitals is spelt.
+
+    Examples
+    --------
+    >>> with_article("Angle"), with_article("curve"), with_article("STL file"), with_article("PLY")
+    ('an Angle', 'a curve', 'an STL file', 'a PLY')
+    """
+    # An S that is spelt is an "ess", a U a "you".
+    vowels = "AEFHILMNORSX" if word.split(" ")[0].isupper() else "AEIOaeiou"
+    return f"{'an' if word.startswith(tuple(vowels)) else 'a'} {word}"
+
+
 def listed(words: Sequence[str]) -> str:
     """Say one or several.
 

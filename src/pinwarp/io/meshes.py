@@ -12,6 +12,7 @@ import numpy as np
 
 from pinwarp.core.errors import FileFormatError, MeshError
 from pinwarp.core.mesh import Mesh
+from pinwarp.core.words import with_article
 from pinwarp.io.atomic import atomic_path
 from pinwarp.io.mesh_formats.foreign import foreign_in, foreign_named
 from pinwarp.io.mesh_formats.kinds import kind_in
@@ -238,7 +239,7 @@ def _reader(content: Content, found: str | None) -> tuple[_Read, tuple[str, ...]
 def _misnamed(suffix: str, found: str | None, suffixes: Sequence[str]) -> tuple[str, ...]:
     if found is None or suffix in suffixes:
         return ()
-    return (f"It is a {found[1:].upper()} file, whatever its name says.",)
+    return (f"It is {with_article(found[1:].upper())} file, whatever its name says.",)
 
 
 def _beside(path: Path, name: str) -> bytes:

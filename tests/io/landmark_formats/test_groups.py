@@ -48,6 +48,8 @@ def test_other_markups_are_read_as_landmarks_still(tmp_path: Path) -> None:
     reading = read(tmp_path, "a.mrk.json", markup("Plane", "abc"))
     assert reading.groups == ()
     assert reading.notes == ("It is a Plane: its control points were read.",)
+    angle = read(tmp_path, "b.mrk.json", markup("Angle", "abc"))
+    assert angle.notes == ("It is an Angle: its control points were read.",)
 
 
 def test_a_point_of_a_curve_that_is_none_is_told_and_left_out(tmp_path: Path) -> None:

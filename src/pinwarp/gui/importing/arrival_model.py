@@ -108,4 +108,4 @@ def _colour(fate: Fate) -> QColor | None:
     """Return a colour for what deserves a look; the words say the same."""
     if fate is Fate.REPLACES:
         return theme.warning_text_colour()
-    return theme.quiet_text_colour() if fate is Fate.SAME else None
+    return theme.quiet_text_colour() if fate in (Fate.SAME, Fate.LEFT_OUT) else None

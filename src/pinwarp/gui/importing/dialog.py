@@ -293,9 +293,8 @@ def _pairing_words(session: Session, arriving: Arriving, pairing: Pairing) -> st
             return f"By &name: {_of(count, len(names))} known here"
         case Pairing.BY_ORDER if side is not None:
             count = len(awaiting(session, side))
-            return (
-                f"By &order: {count:,} wait{'s' if count == 1 else ''} for a {side.value} position"
-            )
+            waits = f"{count or 'none'} waits" if count < 2 else f"{count:,} wait"
+            return f"By &order: {waits} for a {side.value} position"
         case Pairing.BY_ORDER:
             return "By &order: only for one side at a time"
         case Pairing.AS_PASSENGERS if side is Side.SOURCE:

@@ -18,6 +18,7 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.model_rows import ElementRow
+from pinwarp.core.words import counted
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.model import words
 from pinwarp.gui.model.body_tree import BodyTree
@@ -120,7 +121,7 @@ class ModelPanel(QWidget):
         flags = sum(bool(row.flag) for row in rows)
         if name:
             told = f", {flags} flagged" if flags else ""
-            self.title.setText(f"{name}: {len(rows)} elements{told}")
+            self.title.setText(f"{name}: {counted(len(rows), 'element')}{told}")
         text = "\n".join(filter(None, (problem, *notes)))
         self.problem.setText(text)
         self.problem.setVisible(bool(text))
@@ -153,7 +154,7 @@ def _details(chosen: Sequence[ElementRow]) -> str:
     if not chosen:
         return ""
     if len(chosen) > 1:
-        return f"{len(chosen)} elements"
+        return counted(len(chosen), "element")
     (row,) = chosen
     # A long path may be broken where it has a slash.
     path = row.path.replace("/", "/\u200b")

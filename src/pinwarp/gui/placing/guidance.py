@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from qtpy.QtWidgets import QLabel
 
 from pinwarp.core.landmarks import Side
+from pinwarp.core.words import counted
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.placing.ghosts import Ghosts
@@ -243,7 +244,7 @@ class Guidance(Capability):
         def arrived(names: tuple[str, ...]) -> None:
             session = with_template(editor.committed, names)
             editor.commit(session, f"Load template {path.name}")
-            self.said.emit(f"{len(names)} names from {path.name}")
+            self.said.emit(f"{counted(len(names), 'name')} from {path.name}")
             editor.look(guided=next_incomplete(session, None))
 
         tasks.run(f"Reading {path.name}", lambda _progress: read_template(path), arrived)

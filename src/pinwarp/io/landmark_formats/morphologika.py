@@ -9,6 +9,7 @@ from pathlib import Path
 
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Side
+from pinwarp.core.words import counted
 from pinwarp.io.csv_cells import shortened
 from pinwarp.io.landmark_formats.lines import landmark_on, one_line, three_numbers
 from pinwarp.io.landmark_formats.reading import (
@@ -113,9 +114,13 @@ def read_specimen(path: str | Path, text: str, side: Side, which: str) -> Landma
     notes = [*specimen_notes(names, which)]
     held = max(0, len(rows) - first)
     if held < announced:
-        notes.append(f"The file announces {announced} landmarks and holds {held}: was it cut off?")
+        notes.append(
+            f"The file announces {counted(announced, 'landmark')} and holds {held}: was it cut off?"
+        )
     elif len(rows) > specimens * announced:
-        notes.append(f"{len(rows) - specimens * announced} lines behind the last were ignored.")
+        behind = len(rows) - specimens * announced
+        were = "was" if behind == 1 else "were"
+        notes.append(f"{counted(behind, 'line')} behind the last {were} ignored.")
     reading = gathering.reading(NAME, "three numbers on each line below [rawpoints]", notes=notes)
     return replace(reading, specimens=names, specimen=names[chosen_number])
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from pinwarp.core.errors import FileFormatError
 from pinwarp.core.landmarks import Landmark, Position, Side, flipped
-from pinwarp.core.words import counted, some_of
+from pinwarp.core.words import counted, some_of, with_article
 from pinwarp.io.csv_cells import shortened
 from pinwarp.io.landmark_formats.json_root import alone, json_root, part, place, word
 from pinwarp.io.landmark_formats.lines import checked_name, landmark_on
@@ -110,7 +110,7 @@ def read(path: str | Path, text: str, side: Side) -> LandmarkReading:
             "to a file of its own to read them."
         )
     if single and single[0].kind != "Fiducial":
-        notes.append(f"It is a {word(single[0].kind)}: its control points were read.")
+        notes.append(f"It is {with_article(word(single[0].kind))}: its control points were read.")
     frame, unit = (chosen[0].frame, chosen[0].unit) if chosen else ("", "mm")
     if frame not in ("LPS", "RAS"):
         notes += [f"The coordinate system {shortened(frame)} is not known."] if frame else []

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 
 from pinwarp.core.model_parts import KeptPart
+from pinwarp.core.words import with_article
 from pinwarp.io.osim.document import Element
 from pinwarp.io.osim.model import OFFSETS, STATION_FRAME, OsimModel
 from pinwarp.io.osim.sockets import attached_to, is_frame_socket, owner_of
@@ -61,7 +62,7 @@ def _of(model: OsimModel, body: str, element: Element) -> Iterator[tuple[str, st
             yield kind, "there is no rule for this shape", _BY_HAND
     elif element.parent is not None and element.parent.tag == "attached_geometry":
         if tag != "Mesh" and model.body_of(attached_to(model, element)) == body:
-            yield "drawn shape", f"a {kind} moves with its frame and keeps its size", ""
+            yield "drawn shape", f"{with_article(kind)} moves with its frame and keeps its size", ""
     elif element.child("GeometryPath") is not None:
         lengths = [
             f"{name} {model.numbers(element, name, 0.0)[0]:g}"

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pinwarp.core.errors import FileFormatError
-from pinwarp.core.words import some_of
+from pinwarp.core.words import some_of, with_article
 from pinwarp.io.csv_cells import number_of, shortened
 from pinwarp.io.osim.component_paths import canonical, paths_below, segment_of
 from pinwarp.io.osim.document import Document, Element
@@ -197,7 +197,9 @@ class OsimModel:
             return GROUND
         found = self.connected(element, name)
         if found.tag not in (*BASES, *OFFSETS, STATION_FRAME):
-            raise self.error(element, f"Its {name} is a {found.tag}, which is no frame known here.")
+            raise self.error(
+                element, f"Its {name} is {with_article(found.tag)}, which is no frame known here."
+            )
         return self.path_of(found)
 
     def body_of(self, frame: str) -> str:

@@ -251,9 +251,12 @@ def _judged(result: WarpResult, judge: bool) -> Quality | None:
 
 
 def _about_plane(factor: SourceFactor, inputs: WarpInputs) -> tuple[Finding, ...]:
-    """Say that the landmarks leave directions open, where there are enough to settle them all."""
-    pairs = len(inputs.source)
-    if factor.rank == _DIRECTIONS or pairs <= _DIRECTIONS or inputs.settings.planar:
+    """Say that the landmarks leave directions open that so many could settle.
+
+    Three settle how a bone lies and how large it is, unless they lie on one line.
+    """
+    settled = min(len(inputs.source) - 1, _DIRECTIONS)
+    if factor.rank >= settled or inputs.settings.planar:
         return ()
     return (Finding(FindingKind.PLANAR, (), factor.rank),)
 

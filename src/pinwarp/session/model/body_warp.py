@@ -102,7 +102,7 @@ def body_warp(session: Session, bone: Bone) -> BodyWarp:
     _check_lie(bone, view.out(source))
     ratio = _size(solution.destination) / _size(source) if _size(source) > 0 else 1.0
     _check_size(bone, ratio)
-    few = f"With {len(source)} pairs the subject's size is a guess: place at least 8."
+    few = f"With {counted(len(source), 'pair')} the subject's size is a guess: place at least 8."
     spline = solution.part(Components.WITHOUT_POSE)
     notes = (
         *notes,

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from pinwarp.core.errors import PinwarpError
+from pinwarp.core.words import counted
 from pinwarp.session.model.warped import WarpedModel
 from pinwarp.session.model.writing import write_model
 
@@ -82,7 +83,7 @@ class OpenSimCheck:
         arms = [1e3 * abs(x.moment_arm) for x in self.muscles if not math.isnan(x.moment_arm)]
         longest = max(self.muscles, key=lambda each: abs(each.ratio - 1))
         told = [
-            f"OpenSim {self.version} loads it; {len(self.muscles)} paths changed by "
+            f"OpenSim {self.version} loads it; {counted(len(self.muscles), 'path')} changed by "
             f"{np.mean(far):.1f} mm on average and {max(far):.1f} mm at most.",
             f"The ratio furthest from 1 is {longest.ratio:.3f}, of {longest.path}.",
         ]

@@ -23,7 +23,7 @@ from pinwarp.core.refinement import Level, Refinement, refine
 from pinwarp.core.refinement_inputs import DrawnPoints, RefinementSettings
 from pinwarp.core.spline import Spline
 from pinwarp.core.surface import Surface
-from pinwarp.core.words import listed
+from pinwarp.core.words import counted, listed
 from pinwarp.io.refinement_record import RefinementRecord
 from pinwarp.session.session import Session
 from pinwarp.session.warp.refined import drawn_curves, inputs_of
@@ -255,7 +255,8 @@ def verified(
     names = tuple(pair.name for pair in session.pairs)
     if len(names) < LEAST_PAIRS:
         raise PinwarpError(
-            f"With {len(names)} pairs none can be left out: place at least {LEAST_PAIRS}."
+            f"With {counted(len(names), 'pair')} none can be left out: "
+            f"place at least {LEAST_PAIRS}."
         )
     u, v = given.landmarks
     left_out = leave_one_out(factorise(u), v, given.settings.landmark_tolerance)
