@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,16 +15,18 @@ from tests.gui.test_files import drop
 from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import Landmark, Side, scaled
 from pinwarp.core.mesh import Mesh
+from pinwarp.gui.app import PrintedMessages
 from pinwarp.gui.files.documents import Opening
 from pinwarp.gui.scene.drawables import Caption, ScaleBar
 from pinwarp.gui.window.window_dialogs import WindowDialogs
-from pinwarp.io.landmark_files import write_landmarks
+from pinwarp.io.landmark_files import LandmarkReading, write_landmarks
 from pinwarp.io.meshes import read_mesh, write_mesh
 from pinwarp.io.samples import assets_folder, sample_session
 from pinwarp.io.session_file import read_session
 from pinwarp.session.importing.fit import Fit, fitted
-from pinwarp.session.importing.landmarks import Pairing
+from pinwarp.session.importing.landmarks import Arriving, Pairing
 from pinwarp.session.mesh_units import scale_side
+from pinwarp.session.session import Session
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
 BY_NAME, BY_ORDER, AS_NEW, AS_PASSENGERS, ONLY_KNOWN = Pairing
@@ -846,3 +849,18 @@ def test_strangers_dropped_one_after_the_other_are_each_asked_about(user, tmp_pa
     assert user.dialogs.at_import == []
     assert user.session.pairs == before.pairs
     assert len(user.session.passengers) == len(before.passengers) + 6
+
+
+@pytest.mark.parametrize(("side", "way_out"), [(SOURCE, "--passengers"), (DESTINATION, "window")])
+def test_a_picture_that_nobody_is_asked_about_leaves_strangers_out(capsys, side, way_out):
+    session = Session(landmarks=read_session(sample_session()).landmarks)
+    marks = tuple(Landmark(x.name).placed(side, x.source) for x in stations())
+    arriving = Arriving(Path("others.csv"), LandmarkReading(marks, False, ()), side)
+    messages = PrintedMessages()
+    assert messages.ask_import(session, arriving) is None
+    told = capsys.readouterr().err
+    assert "others.csv was left out" in told
+    assert "station_0" in told
+    assert way_out in told
+    # The command fails, so that a script hears of it.
+    assert len(messages.errors) == 1

@@ -54,10 +54,15 @@ class PrintedMessages(WindowDialogs):
     def ask_import(self, session: Session, arriving: Arriving) -> ImportChoice | None:
         """Leave out what nobody can be asked about, and say so."""
         others = [x.name for x in arriving.landmarks if session.landmark(x.name) is None]
+        way_out = (
+            "Give it as --passengers if the warp is to carry them."
+            if arriving.side is Side.SOURCE
+            else "In the window you can say what they are."
+        )
         self.tell_error(
             "Names that are not here",
             f"{arriving.path.name} was left out: all landmarks are paired, and it brings others "
-            f"({some_of(others)}). Give it as --passengers if the warp is to carry them.",
+            f"({some_of(others)}). {way_out}",
         )
         return None
 
