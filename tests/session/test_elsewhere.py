@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from pinwarp.core.findings import FindingKind, Severity
+from pinwarp.core.groups import Curve, Handle
 from pinwarp.core.landmarks import Side
 from pinwarp.io.samples import sample_session
 from pinwarp.session.importing.fit import Fit, fitted
@@ -119,3 +120,12 @@ def test_a_guard_measures_each_mesh_once(sample: Session) -> None:
     turned = fitted(sample, Side.SOURCE, Fit(flips=True))
     assert guard.look(turned) == elsewhere(turned)
     assert guard.look(Session(landmarks=sample.landmarks)) == ()
+
+
+def test_curves_without_a_landmark_are_looked_at_as_well(sample: Session) -> None:
+    curve = Curve("rim", tuple(Handle(x.source) for x in sample.pairs))
+    alone = replace(sample, landmarks=(), groups=(curve,))
+    assert elsewhere(alone) == ()
+    (found,) = elsewhere(fitted(alone, Side.SOURCE, Fit(flips=True)))
+    assert found.sentence.startswith("The source curves and patches lie")
+    assert found.fit.flips

@@ -351,6 +351,8 @@ def test_a_passenger_that_is_there_gets_its_place_and_a_pair_of_that_name_stays_
 def test_where_something_waits_nothing_is_taken_for_passengers(half):
     session = edits.remove_side(paired(), "p2", half)
     assert default_pairing(session, stations("x", "y", "z")) is not Pairing.AS_PASSENGERS
+    # Nor do they join the pairs without a question.
+    assert not is_plain(session, stations("x", "y", "z"))
 
 
 def test_of_a_file_only_what_is_known_comes_in():

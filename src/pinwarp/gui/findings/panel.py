@@ -100,10 +100,10 @@ class FindingRow(QFrame):
             tip = f"Mirror the source across {mirror_axis}: a left bone becomes a right one"
         elif isinstance(found, Elsewhere) and found.fit is not None:
             remedy = found.fit.action
-            tip = f"Read all {found.side.value} landmarks another way; their mesh stays"
+            tip = f"Read all {found.side.value} {found.what} another way; their mesh stays"
         elif isinstance(found, Elsewhere):
             remedy = "Open Mesh…"
-            tip = f"Open the mesh that the {found.side.value} landmarks were placed on"
+            tip = f"Open the mesh that the {found.side.value} {found.what} were placed on"
         elif isinstance(found, DifferentUnits) and found.ways:
             remedy, tip = "Scale", "Bring one mesh to the unit of the other, with its landmarks"
         elif kind in _REPLACED:

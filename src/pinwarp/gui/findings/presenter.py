@@ -166,7 +166,7 @@ class FindingsPresenter(Capability):
         """Ask whether landmarks lie on their meshes, where either is another than before."""
         session = self._editor.committed
         places = tuple((x.source, x.destination) for x in session.landmarks)
-        key = (places, session.source, session.destination, session.unit)
+        key = (places, session.groups, session.source, session.destination, session.unit)
         if key != self._looked_at:
             self._looked_at = key
             self._guard.request((self._meshes, session, key))
@@ -268,7 +268,7 @@ class FindingsPresenter(Capability):
             self._open_mesh(found.side)
             return
         session = fitted(self._editor.committed, found.side, found.fit)
-        self._editor.commit(session, f"Correct {found.side.value} landmarks")
+        self._editor.commit(session, f"Correct {found.side.value} {found.what}")
         self._say(f"{found.fit.describe()}: {self._undo_key} undoes it.")
 
     def _scale(self, side: Side) -> None:

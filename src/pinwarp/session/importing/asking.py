@@ -94,7 +94,7 @@ def is_plain(session: Session, arriving: Arriving) -> bool:
     if look_alikes(x.name for x in (*session.landmarks, *reading.landmarks)):
         return False
     if fates == {Fate.NEW}:
-        # Where all is paired they would be halves that wait for ever.
-        is_free = arriving.side is None or not awaiting(session, arriving.side)
-        return is_free and (arriving.side is None or not is_paired(session))
+        # Where pairs are there already they may be halves that wait for ever.
+        has_pairs = any(x.is_complete for x in session.landmarks)
+        return arriving.side is None or not (has_pairs or awaiting(session, arriving.side))
     return Fate.NEW not in fates

@@ -8,7 +8,8 @@ from types import MappingProxyType
 
 from pinwarp.core.errors import RangeError
 from pinwarp.core.findings import Finding, FindingKind
-from pinwarp.core.landmarks import Side
+from pinwarp.core.groups import Curve
+from pinwarp.core.landmarks import Landmark, Position, Side
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.surface_distance import SurfaceIndex
 from pinwarp.session.importing.fit import Fit, distance_from_mesh, fits_of, is_far
@@ -29,17 +30,20 @@ class Elsewhere(NamedFinding):
         How large the mesh is.
     fit
         How they would have to be read to lie on it; None where no other reading helps.
+    what
+        What was looked at: curves and patches where there is no landmark.
     """
 
     side: Side
     size: float
     fit: Fit | None
+    what: str = "landmarks"
 
     def by(self, rulers: Rulers) -> Elsewhere:
         """Return the same, its lengths told by other rulers."""
         ruler, fit = rulers.on(self.side), self.fit
         far = distance_from_mesh(self.finding.value, self.size, ruler, "their mesh")
-        sentence = f"The {self.side.value} landmarks lie {far} in the median"
+        sentence = f"The {self.side.value} {self.what} lie {far} in the median"
         if fit is None:
             sentence += (
                 f", and it is {ruler.text(self.size, 3)} across: is it the one that they were "
@@ -78,24 +82,24 @@ def elsewhere(
     """
     found = []
     for side in Side:
-        mesh = session.mesh(side)
-        if mesh is None or all(x.position(side) is None for x in session.landmarks):
+        mesh, (what, placed) = session.mesh(side), _placed(session, side)
+        if mesh is None or not placed:
             continue
         index = indexes.get(side)
         if index is None or index.mesh is not mesh:
             index = _index_of(mesh)
         if index is None:
             continue
-        stored, *others = fits_of(session.landmarks, side, index) or (Fit(),)
+        stored, *others = fits_of(placed, side, index) or (Fit(),)
         size = mesh.diagonal
         if others:
             kind, fit, other = FindingKind.ELSEWHERE, others[0], others[0].distance
-        elif is_far(session.landmarks, side, stored.distance, size):
+        elif is_far(placed, side, stored.distance, size):
             kind, fit, other = FindingKind.FAR, None, size
         else:
             continue
         finding = Finding(kind, (), stored.distance, (other,))
-        found.append(Elsewhere(finding, (), "", side, size, fit).by(rulers_of(session)))
+        found.append(Elsewhere(finding, (), "", side, size, fit, what).by(rulers_of(session)))
     return tuple(found)
 
 
@@ -117,6 +121,24 @@ class MeshGuard:
                 if mesh is not None and (index := _index_of(mesh)):
                     self._indexes[side] = index
         return elsewhere(session, self._indexes)
+
+
+def _placed(session: Session, side: Side) -> tuple[str, tuple[Landmark, ...]]:
+    """Return what there is on a side, and what it is; curves and patches where no landmark is."""
+    landmarks = tuple(x for x in session.landmarks if x.position(side) is not None)
+    if landmarks:
+        return "landmarks", landmarks
+    places: list[Position | None] = []
+    for group in session.groups:
+        if isinstance(group, Curve):
+            is_source = side is Side.SOURCE
+            places += [x.source if is_source else x.destination for x in group.handles]
+        elif side is Side.SOURCE:
+            places += group.points
+    points = [place for place in places if place is not None]
+    return "curves and patches", tuple(
+        Landmark(f"{row}").placed(side, place) for row, place in enumerate(points)
+    )
 
 
 def _index_of(mesh: Mesh) -> SurfaceIndex | None:
