@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import datetime
 
 import numpy as np
@@ -87,7 +88,7 @@ def test_the_chart_shades_the_penalties_that_do_as_well_and_says_so():
 
 def test_where_pairs_are_judged_at_another_penalty_report_check_and_list_say_at_which(tmp_path):
     session = edits.set_penalty(noisy(1.5), 2.5)
-    words = judged_at(session.settings, rulers_of(session).session)
+    words = judged_at(session, rulers_of(session).session)
     assert "judged at penalty 0, not at 2.5 mm" in words
     report = reported(session)
     assert dict(report.remarks)["To check"] == words
@@ -98,3 +99,7 @@ def test_where_pairs_are_judged_at_another_penalty_report_check_and_list_say_at_
     # What is found does not depend on the penalty of the warp.
     assert report.findings == reported(noisy(1.5)).findings
     assert dict(reported(noisy(1.5)).remarks)["To check"] == ""
+    # Too few are not judged at all.
+    few = replace(session, landmarks=session.pairs[:4])
+    assert dict(reported(few).remarks)["To check"] == ""
+    assert "judged at" not in " ".join(check(few).notes)

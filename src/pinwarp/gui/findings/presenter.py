@@ -207,7 +207,7 @@ class FindingsPresenter(Capability):
             [one for one in self._found if one.finding.kind is not FindingKind.SUGGESTED]
         )
         judged_pairs = any(one.finding.kind in _OF_PAIRS for one in self._found)
-        words = judged_at(session.settings, rulers.session) if judged_pairs else ""
+        words = judged_at(session, rulers.session) if judged_pairs else ""
         self.panel.show_findings(self._found, self._mirror_axis(quality), words)
         self.panel.show_selection(self._editor.selection.names)
         self._next.renew()

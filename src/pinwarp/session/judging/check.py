@@ -249,7 +249,7 @@ def check(session: Session | SolvedWarp, source_index: SurfaceIndex | None = Non
         fitted=warp.fitted,
         findings=gravest_first(findings),
         notes=(
-            *filter(None, [judged_at(session.settings, rulers_of(session).session)]),
+            *filter(None, [judged_at(session, rulers_of(session).session)]),
             *_about_refinement(session),
             *not_sliding_note(result),
             *_about_files(session),

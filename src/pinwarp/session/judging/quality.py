@@ -25,7 +25,6 @@ from pinwarp.core.quality import (
     leave_one_out,
     penalty_curve,
 )
-from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import Spline, solve
 from pinwarp.core.suspects import suspects
 from pinwarp.session.rulers import rulers_of
@@ -140,19 +139,27 @@ class Quality:
         return named_findings(self.findings, self.inputs, session, ruler)
 
 
-def judged_at(settings: WarpSettings, ruler: Ruler) -> str:
+def judged_at(session: Session, ruler: Ruler) -> str:
     """Say at which penalty pairs are judged where that is another than the warp's; else nothing.
+
+    Nothing, too, where they are too few to be judged.
 
     Examples
     --------
-    >>> judged_at(WarpSettings(2.5), Ruler("mm"))
+    >>> from dataclasses import replace
+    >>> from pinwarp.core.settings import WarpSettings
+    >>> from pinwarp.io.samples import sample_session
+    >>> from pinwarp.session.keeping.files import read_session
+    >>> session = read_session(sample_session())
+    >>> judged_at(replace(session, settings=WarpSettings(2.5)), Ruler("mm"))
     'Which pairs look wrong is judged at penalty 0, not at 2.5 mm, which spreads an error.'
-    >>> judged_at(WarpSettings(), Ruler("mm"))
+    >>> judged_at(session, Ruler("mm"))
     ''
     """
-    if settings.penalty == 0:
+    penalty = session.settings.penalty
+    if penalty == 0 or len(session.pairs) < LEAST_PAIRS:
         return ""
-    own = "infinity" if math.isinf(settings.penalty) else ruler.text(settings.penalty)
+    own = "infinity" if math.isinf(penalty) else ruler.text(penalty)
     return f"Which pairs look wrong is judged at penalty 0, not at {own}, which spreads an error."
 
 

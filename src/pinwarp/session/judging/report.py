@@ -123,7 +123,7 @@ def report_of(
             )
         ),
         remarks=(
-            ("To check", judged_at(session.settings, ruler)),
+            ("To check", judged_at(session, ruler)),
             ("Warping penalty", _advice(quality.curve, unit)),
             (
                 "Pairs",
