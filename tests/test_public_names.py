@@ -12,6 +12,7 @@ import pytest
 import pinwarp
 
 NAMES = [
+    "Basis",
     "Check",
     "Components",
     "ElementRow",

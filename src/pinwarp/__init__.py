@@ -16,8 +16,8 @@ Models of OpenSim
     :class:`WarpedModel`, :class:`ElementRow`
 The spline
     :func:`solve_coefficients`, :class:`TPSCoefficients3D`, :class:`PenaltyConvention`,
-    :class:`Components`, :func:`factorise`, :func:`leave_one_out`, :func:`suspects`,
-    :func:`penalty_curve`, :func:`repeatability`, :func:`noise_level`
+    :class:`Basis`, :class:`Components`, :func:`factorise`, :func:`leave_one_out`,
+    :func:`suspects`, :func:`penalty_curve`, :func:`repeatability`, :func:`noise_level`
 What can go wrong
     :class:`PinwarpError`, :class:`PinwarpWarning`
 
@@ -59,11 +59,12 @@ if TYPE_CHECKING:
     from pinwarp.session.outputs.exports import warped_mesh, warped_passengers
     from pinwarp.session.session import Session
     from pinwarp.session.warp.refining import RefinementOptions, refined_session
-    from pinwarp.tps3d import PenaltyConvention, TPSCoefficients3D, solve_coefficients
+    from pinwarp.tps3d import Basis, PenaltyConvention, TPSCoefficients3D, solve_coefficients
 
 from pinwarp.version import __version__
 
 __all__ = [
+    "Basis",
     "Check",
     "Components",
     "ElementRow",
@@ -130,7 +131,7 @@ _HOMES = {
     "session.keeping.files": ("read_session", "write_session"),
     "session.session": ("Session",),
     "session.warp.refining": ("RefinementOptions", "refined_session"),
-    "tps3d": ("PenaltyConvention", "TPSCoefficients3D", "solve_coefficients"),
+    "tps3d": ("Basis", "PenaltyConvention", "TPSCoefficients3D", "solve_coefficients"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 

@@ -21,12 +21,14 @@ _compile = numba.njit(parallel=True, fastmath=True, cache=True, nogil=True, erro
 
 
 @_compile
-def evaluate(source, weights, affine, points, out):
+def evaluate(source, weights, affine, points, out, logarithmic):
     """Write ``f(points)`` into out.
 
     Distances have the precision of the points (with which source, weights and out agree); affine
-    (4, 3) and the totals are double.
+    (4, 3) and the totals are double. The basis is r where logarithmic is None, which is another
+    compiled loop than that of ``r^2 log r``, not a question asked in it.
     """
+    tiny = np.finfo(points.dtype).tiny
     count = source.shape[0]
     total = points.shape[0]
     for block in numba.prange((total + BLOCK - 1) // BLOCK):
@@ -66,7 +68,11 @@ def evaluate(source, weights, affine, points, out):
                     dx = x[i] - ux
                     dy = y[i] - uy
                     dz = z[i] - uz
-                    r = np.sqrt(dx * dx + dy * dy + dz * dz)
+                    r = dx * dx + dy * dy + dz * dz
+                    if logarithmic is None:
+                        r = np.sqrt(r)
+                    else:
+                        r *= np.log(r + tiny) / 2
                     sx[i] += wx * r
                     sy[i] += wy * r
                     sz[i] += wz * r
@@ -229,10 +235,11 @@ def evaluate_scalar(source, weights, affine, points, out):
 
 
 @_compile
-def evaluate_jacobian(source, weights, affine, points, out):
+def evaluate_jacobian(source, weights, affine, points, out, logarithmic):
     """Write ``d f_c / d v_j`` into out[:, c, j], all in the precision of the points.
 
-    A landmark's own term is left out at that landmark, where the spline has a cone. Nine sums fit
+    A landmark's own term is left out at that landmark, where the spline has a cone; the basis is
+    as for ``evaluate``. Nine sums fit
     into registers, not into a block: here the inner loop runs over the landmarks.
     """
     count = source.shape[0]
@@ -252,7 +259,8 @@ def evaluate_jacobian(source, weights, affine, points, out):
             dx = x - ux[k]
             dy = y - uy[k]
             dz = z - uz[k]
-            q = one / np.sqrt(dx * dx + dy * dy + dz * dz + tiny)
+            q = dx * dx + dy * dy + dz * dz + tiny
+            q = one / np.sqrt(q) if logarithmic is None else np.log(q) + one
             dx *= q
             dy *= q
             dz *= q

@@ -18,7 +18,8 @@
     PinwarpWarning (UserWarning)
     ├── ConflictingLandmarksWarning     one place on the source, two on the destination
     ├── NearlyPlanarWarning             the warp is unreliable far from the landmarks
-    └── PoleWarning                     an OPYNSIM penalty near or above a pole
+    ├── PoleWarning                     an OPYNSIM penalty near or above a pole
+    └── SideConditionsWarning           coefficients made elsewhere that are hardly a spline's
 """
 
 from __future__ import annotations
@@ -165,6 +166,10 @@ class ConflictingLandmarksWarning(PinwarpWarning):
 
 class NearlyPlanarWarning(PinwarpWarning):
     """The source landmarks lie nearly in one plane."""
+
+
+class SideConditionsWarning(PinwarpWarning):
+    """Coefficients made elsewhere whose weights are hardly those of a spline."""
 
 
 class PoleWarning(PinwarpWarning):

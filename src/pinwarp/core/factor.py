@@ -4,7 +4,9 @@ The saddle-point system of the thin-plate spline is solved in the space that its
 leave free (numerics: Wahba, Spline Models for Observational Data, 1990, section 2.4). With the
 centred and scaled source ``u``, ``P = [1, u] = Q R``, ``Q = [Q1 Q2]`` and ``K_ij = |u_i - u_j|``,
 the matrix ``N = -Q2^T K Q2`` is symmetric and positive definite: ``|u_i - u_j|`` is conditionally
-*negative* definite, hence the minus.
+*negative* definite, hence the minus. With the basis ``r^2 log r``, whose K is conditionally
+positive definite, ``N = Q2^T K Q2``. Its K in other units of length differs by a multiple of
+``r^2``, which on those weights is nothing, and at any place the same constant.
 """
 
 from __future__ import annotations
@@ -18,7 +20,8 @@ from scipy.linalg import solve_triangular
 from scipy.spatial import KDTree
 from scipy.spatial.distance import cdist
 
-from pinwarp.core.errors import LandmarkCountError
+from pinwarp.core.basis import Basis
+from pinwarp.core.errors import LandmarkCountError, PinwarpError
 from pinwarp.core.findings import Finding, FindingKind
 from pinwarp.core.householder import Reflections
 from pinwarp.core.positions import as_positions
@@ -31,6 +34,8 @@ RANK_TOLERANCE = 1e-5
 PLANAR_TOLERANCE = 0.05
 # Nor has any direction where all are so small.
 TINIEST = 1e-290
+# Nor squares of them that any digits are left of.
+TINIEST_SQUARED = 1e-140
 # Landmarks closer than this share of the median spacing are reported.
 CLOSE_TOLERANCE = 1e-4
 
@@ -51,6 +56,8 @@ class SourceFactor:
         What is noteworthy about them.
     duplicates
         The places where several landmarks lie: the rows of each, ascending.
+    basis
+        What the spline is built of.
     """
 
     source: Matrix
@@ -64,6 +71,17 @@ class SourceFactor:
     coupling: Matrix
     bending: Matrix
     well_spaced: bool
+    basis: Basis = Basis.R
+
+    @property
+    def strength(self) -> float:
+        """What an eigenvalue of ``N`` is multiplied by in mesh units: a length, or its square."""
+        return self.scale**self.basis.power
+
+    @cached_property
+    def in_basis_r(self) -> SourceFactor:
+        """The same for the basis r, by which landmarks are judged whatever they warp with."""
+        return self if self.basis is Basis.R else factorise(self.source)
 
     @property
     def rank(self) -> int:
@@ -72,9 +90,9 @@ class SourceFactor:
 
     @cached_property
     def modes(self) -> tuple[Matrix, Matrix]:
-        """Eigenvalues of ``N`` in mesh units (ascending) and its eigenvectors as columns."""
+        """Eigenvalues of ``N`` in units of the penalty (ascending), its eigenvectors as columns."""
         values, vectors = np.linalg.eigh(self.bending)
-        return values * self.scale, vectors
+        return values * self.strength, vectors
 
     @cached_property
     def modes_at_landmarks(self) -> Matrix:
@@ -93,7 +111,8 @@ class SourceFactor:
     @cached_property
     def places(self) -> SourceFactor:
         """The same with each place once."""
-        return factorise(self.source[np.unique(self.place_of, return_index=True)[1]])
+        rows = np.unique(self.place_of, return_index=True)[1]
+        return factorise(self.source[rows], basis=self.basis)
 
     def certainty(self, penalties: Matrix) -> tuple[Matrix, Matrix]:
         """Return ``(stiffest + s) / (lambda + s)`` of every mode for (k,) penalties.
@@ -129,15 +148,15 @@ class SourceFactor:
 
     @property
     def smallest_mode(self) -> float:
-        """What an eigenvalue must exceed to be told from rounding, in mesh units."""
+        """What an eigenvalue must exceed to be told from rounding."""
         return float(8 * len(self.source) * np.finfo(np.float64).eps * self.stiffest_mode)
 
     @property
     def stiffest_mode(self) -> float:
-        """The largest eigenvalue, but no less than the scale: mesh units."""
+        """The largest eigenvalue, but no less than :attr:`strength`."""
         values, _ = self.modes
         # With duplicates alone left, the largest eigenvalue is rounding too: compare to the scale.
-        return max(float(values[-1]) if len(values) else 0.0, self.scale)
+        return max(float(values[-1]) if len(values) else 0.0, self.strength)
 
     @property
     def poles(self) -> Matrix:
@@ -187,7 +206,7 @@ class SourceFactor:
         return float(np.exp(0.5 * (low + high)))
 
 
-def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
+def factorise(source: ArrayLike, *, planar: bool = False, basis: Basis = Basis.R) -> SourceFactor:
     """Factorise a set of source landmarks.
 
     Parameters
@@ -196,7 +215,10 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
         (n, 3) positions in mesh units, n >= 1.
     planar
         Treat nearly planar landmarks as planar: the affine part is then free only within the
-        plane and a similarity across it, which keeps the warp tame far from the landmarks.
+        plane and a similarity across it, which keeps the warp tame far from the landmarks. Only
+        with the basis r: with the other the equations then lose their definiteness.
+    basis
+        What the spline is built of.
 
     Returns
     -------
@@ -206,12 +228,15 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
     ------
     LandmarkError
         When there are none, or a row cannot be used.
+    PinwarpError
+        When they are to be treated as planar with another basis than r.
 
     Examples
     --------
     >>> factorise([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]).rank
     3
     """
+    check_planar(planar, basis)
     source = as_positions(source, "source landmark")
     if not len(source):
         raise LandmarkCountError("There are no landmark pairs: place at least one.")
@@ -223,8 +248,9 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
     scale = (
         extent * float(np.sqrt(np.mean(np.sum((offsets / extent) ** 2, axis=1)))) if extent else 0
     )
+    tiniest = TINIEST if basis.power == 1 else TINIEST_SQUARED
     # What is next to nothing has no reciprocal: it is taken for nothing.
-    at_one_place = scale <= max(1e-12 * float(np.abs(centre).max()), TINIEST)
+    at_one_place = scale <= max(1e-12 * float(np.abs(centre).max()), tiniest)
     if at_one_place:
         scale = 1.0
     unit = np.zeros_like(offsets) if at_one_place else offsets / scale
@@ -233,17 +259,18 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
     rank = 0 if at_one_place else int(np.sum(extents > tolerance * extents[0]))
     directions = directions[:rank]
 
-    basis = np.column_stack([np.ones(count), unit @ directions.T])
+    columns_of = np.column_stack([np.ones(count), unit @ directions.T])
     # Fewer landmarks than columns cannot happen: n centred landmarks span n - 1 directions.
-    reflections = Reflections.of(basis)
+    reflections = Reflections.of(columns_of)
     columns = rank + 1
     distances = cdist(unit, unit)
-    # N and its neighbours are of -K.
-    projected = reflections.conjugate(distances)
-    np.negative(projected, out=projected)
-
     np.fill_diagonal(distances, np.inf)
-    findings, duplicates, well_spaced = _spacing(distances, scale)
+    findings, duplicates, well_spaced = _spacing(distances, scale, basis)
+    np.fill_diagonal(distances, 0.0)
+    # N and its neighbours are of K with the sign that makes N positive.
+    projected = reflections.conjugate(basis.of(distances))
+    if basis.sign < 0:
+        np.negative(projected, out=projected)
     if rank == 3 and extents[2] < PLANAR_TOLERANCE * extents[0]:
         findings += (Finding(FindingKind.NEARLY_PLANAR, (), float(extents[2] / extents[0])),)
     return SourceFactor(
@@ -258,18 +285,28 @@ def factorise(source: ArrayLike, *, planar: bool = False) -> SourceFactor:
         coupling=projected[:columns, columns:].copy(),
         bending=projected[columns:, columns:],
         well_spaced=well_spaced,
+        basis=basis,
     )
 
 
+def check_planar(planar: bool, basis: Basis) -> None:
+    """Refuse what cannot be: PinwarpError where planar landmarks meet another basis than r."""
+    if planar and basis is not Basis.R:
+        raise PinwarpError(
+            "Landmarks can be treated as planar with the basis r only: choose it, or do not treat "
+            "them as planar."
+        )
+
+
 def _spacing(
-    distances: Matrix, scale: float
+    distances: Matrix, scale: float, basis: Basis
 ) -> tuple[tuple[Finding, ...], tuple[tuple[int, ...], ...], bool]:
     """Find places where several landmarks lie, and places suspiciously close together."""
     count = len(distances)
     if count < 2:
         return (), (), True
     nearest = distances.min(axis=1)
-    same, close = _thresholds(nearest)
+    same, close = _thresholds(nearest, basis)
     if nearest.min() > close:
         return (), (), True
     duplicates = _clusters(distances <= same)
@@ -284,14 +321,14 @@ def _spacing(
     return findings, duplicates, False
 
 
-def _thresholds(nearest: Matrix) -> tuple[float, float]:
+def _thresholds(nearest: Matrix, basis: Basis = Basis.R) -> tuple[float, float]:
     """Return up to which distance landmarks lie at one place, and up to which suspiciously close.
 
     From the distance of each to the nearest, in units of their RMS radius.
     """
     count = len(nearest)
     # The largest eigenvalue is at most n times the largest distance (about 6 in these units).
-    same = 8 * count * np.finfo(np.float64).eps * count
+    same = float(8 * count * np.finfo(np.float64).eps * count) ** (1 / basis.power)
     return same, max(CLOSE_TOLERANCE * float(np.median(nearest)), same)
 
 

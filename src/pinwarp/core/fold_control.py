@@ -50,7 +50,7 @@ class FoldControl:
     def bad(self, spline: Spline) -> Matrix:
         """Return the (b, 3) places of the source that lose too much."""
         rough = kernel.evaluate_jacobian_preview(
-            spline.source, spline.weights, spline.affine, self._judged
+            spline.source, spline.weights, spline.affine, self._judged, spline.basis
         )
         rough_volumes = determinants(rough.astype(np.float64))
         # Only where five digits may not tell, it takes all.

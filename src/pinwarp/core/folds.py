@@ -5,7 +5,9 @@ the warp is ``J = A + sum_i C_i``, ``C_i = w_i (v - u_i)^T / |v - u_i|`` (see
 :mod:`pinwarp.core.jacobian`). On the way from the affine part to J, all landmarks in step, the
 determinant changes by the sum of ``<M, C_i>`` with M the mean along that way of the cofactor
 matrix, its gradient: each landmark's share of the loss (Aumann and Shapley, Values of Non-Atomic
-Games, 1974). The cofactors are quadratic along the way: three places give M exactly.
+Games, 1974). The cofactors are quadratic along the way: three places give M exactly. The terms of
+the basis r are local, those of ``r^2 log r`` of neighbours take away what one another add: there
+the shares are those in the spline of the basis r that takes the landmarks to the same places.
 """
 
 from __future__ import annotations
@@ -18,10 +20,11 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial.distance import cdist
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.findings import Finding, FindingKind
 from pinwarp.core.jacobian import jacobians
 from pinwarp.core.mesh import Mesh
-from pinwarp.core.spline import Spline
+from pinwarp.core.spline import Spline, factorise, solve
 
 Matrix = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -122,9 +125,12 @@ def folds_of(
         raise ValueError(f"{values.shape} determinants for {len(mesh.vertices)} vertices.")
     mirrors = bool(np.linalg.det(spline.affine[1:]) < 0)
     is_folded = ((values >= 0) if mirrors else (values <= 0)) & mesh.on_surface
+    judge = spline
+    if spline.basis is not Basis.R and is_folded.any() and len(spline.source):
+        judge = solve(factorise(spline.source), spline.evaluate(spline.source))
     patches = tuple(
         FoldPatch(
-            vertices, _responsible(spline, mesh.vertices[_judged(vertices)], mirrors, landmarks)
+            vertices, _responsible(judge, mesh.vertices[_judged(vertices)], mirrors, landmarks)
         )
         for vertices in _connected(is_folded, mesh)
     )

@@ -2,7 +2,8 @@
 
 ``J = A + sum_i w_i (v - u_i)^T / |v - u_i|``, the derivative of the equation in
 :mod:`pinwarp.core.spline`, with ``A`` the affine part's matrix. A landmark is the tip of a cone:
-the spline has no derivative there, and what is returned is the mean over all directions.
+the spline has no derivative there, and what is returned is the mean over all directions. With the
+basis ``r^2 log r`` a term is ``w_i (v - u_i)^T (2 log |v - u_i| + 1)``, and there are no cones.
 """
 
 from __future__ import annotations
@@ -60,7 +61,7 @@ def jacobians(spline: Spline, points: ArrayLike, checkpoint: Checkpoint = go_on)
     found = np.empty((len(points), 3, 3))
     for part in parts(len(points), max(1, TERMS // max(1, len(spline.source))), checkpoint):
         found[part] = kernel.evaluate_jacobian(
-            spline.source, spline.weights, spline.affine, points[part]
+            spline.source, spline.weights, spline.affine, points[part], spline.basis
         )
     largest = float(np.abs(found).max(initial=0.0))
     if not largest <= LARGEST_STRETCH or 0 < largest < 1 / LARGEST_STRETCH:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pinwarp.core import kernel
+from pinwarp.core.basis import Basis
 from pinwarp.core.errors import RangeError
 from pinwarp.core.factor import SourceFactor
 from pinwarp.core.positions import quiet
@@ -91,10 +92,11 @@ def suits_single(spline: Spline, points: PreviewPoints) -> bool:
 def preview(spline: Spline, points: PreviewPoints) -> Single:
     """Return the warped points, evaluated directly; RangeError where they cannot be drawn."""
     source, affine = spline.source - points.centre, kernel.about(spline.affine, points.centre)
-    if suits_single(spline, points):
+    # Squares times logarithms cancel too many digits for single precision.
+    if spline.basis is Basis.R and suits_single(spline, points):
         return kernel.evaluate_preview(source, spline.weights, affine, points.local)
     local = points.local.astype(np.float64)
-    return drawable(kernel.evaluate(source, spline.weights, affine, local))
+    return drawable(kernel.evaluate(source, spline.weights, affine, local, spline.basis))
 
 
 def drawable(warped: Matrix) -> Single:
@@ -152,7 +154,7 @@ class PenaltySweep:
         self._shares = combinations * sizes
         # What combination k makes of each mode, at penalty 0.
         per_size = np.divide(1.0, sizes, out=np.zeros_like(sizes), where=sizes > 0)
-        at_zero = parts * (factor.scale / self._eigenvalues)[:, None]
+        at_zero = parts * (factor.strength / self._eigenvalues)[:, None]
         combined = np.einsum("km,mc->mkc", combinations * per_size, at_zero)
         gamma = vectors @ combined.reshape(len(sizes), 3 * len(combinations))
         weights, affine = back_to_landmarks(factor, gamma)
@@ -161,6 +163,7 @@ class PenaltySweep:
             weights,
             kernel.about(affine, points.centre - factor.centre),
             points.local,
+            factor.basis,
         )
 
     def _reduce(self, sizes: Matrix, extent: float) -> Matrix:
@@ -218,6 +221,7 @@ class Influence:
             weights[:, 0],
             kernel.about(affine, points.centre - factor.centre)[:, 0],
             points.local,
+            factor.basis,
         )
         self._begin = np.asarray(position, dtype=np.float64)
         self._start = preview(spline, points)

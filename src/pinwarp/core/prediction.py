@@ -1,8 +1,9 @@
 """How sure the warp is away from its landmarks, and the way back from destination to source.
 
 The thin-plate spline is also the best linear prediction of a random field with the generalised
-covariance ``-r`` and an affine drift (universal kriging: Cressie, Statistics for Spatial Data,
-1993, sections 3.4 and 5.4), so each place has a variance of prediction:
+covariance ``-r`` (or, with that basis, ``r^2 log r``) and an affine drift (universal kriging:
+Cressie, Statistics for Spatial Data, 1993, sections 3.4 and 5.4), so each place has a variance of
+prediction:
 ``sigma^2 * -[c; p]^T M^-1 [c; p]`` with ``c_i = -|v - u_i|``, ``p = (1, v)`` and
 ``M = [[-K + s I, P], [P^T, 0]]``. It belongs to the regularising convention of the penalty.
 """
@@ -85,8 +86,10 @@ class Prediction:
         factor = self._factor
         t = affine_coordinates(factor, points)
         distances = cdist(points, factor.source)
-        distances /= -factor.scale
-        projected = distances @ self._columns
+        distances /= factor.scale
+        covariances = factor.basis.of(distances)
+        covariances *= factor.basis.sign
+        projected = covariances @ self._columns
         columns = t.shape[1]
         bent = projected[:, columns:]
         bent -= t @ self._coupling
@@ -112,7 +115,7 @@ def prediction_of(
     destination
         (n, 3) destination landmarks.
     penalty
-        The warping penalty of the regularising convention, a length in mesh units. At infinity
+        The warping penalty of the regularising convention, in mesh units. At infinity
         the figures are those of the affine regression.
 
     Returns
@@ -195,7 +198,7 @@ def _prepared(
     affine = factor.rotate_back(np.eye(len(factor.source), columns))
     _, vectors = factor.modes
     # All is relative to the stiffest mode; at an infinite penalty the modes have no share.
-    share = factor.scale / (factor.stiffest_mode + penalty)
+    share = factor.strength / (factor.stiffest_mode + penalty)
     weight = share * np.sqrt(certainty)
     return Prediction(
         _sigma=sigma,

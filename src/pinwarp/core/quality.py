@@ -4,7 +4,8 @@ With ``G = Q2 Z (Lambda + s)^-1 Z^T Q2^T`` (the top left block of the inverted b
 and destinations ``y``, the residual of pair i is ``s (G y)_i`` and its leave-one-out error
 ``(G y)_i / G_ii`` (Wahba, Spline Models for Observational Data, 1990, section 4.2); ``1 / G_ii``
 is, up to sigma, the variance of the prediction that the other pairs make there, so
-``(G y)_i / sqrt(G_ii)`` is that error standardised. All is of the regularising convention.
+``(G y)_i / sqrt(G_ii)`` is that error standardised. All is of the regularising convention,
+and ``N`` of the factor's basis.
 """
 
 from __future__ import annotations
@@ -290,7 +291,9 @@ def _as_good(penalties: Matrix, squares: Matrix) -> tuple[float, float]:
 def bending_energy(spline: Spline) -> Matrix:
     """Return how much each coordinate of the warp bends, up to the factor 8 pi.
 
-    ``-w^T K w`` with ``K_ij = |u_i - u_j|``, never negative (Bookstein 1989, in 3D).
+    ``-w^T K w`` with ``K_ij = |u_i - u_j|``, never negative (Bookstein 1989, in 3D). With the
+    basis ``r^2 log r`` it is ``w^T K w``, which in space is no integral of squared second
+    derivatives but of their fractional kin of order 5/2: not to be compared with the other's.
 
     Parameters
     ----------
@@ -300,7 +303,8 @@ def bending_energy(spline: Spline) -> Matrix:
     Returns
     -------
     (3,) float64
-        For x, y and z of the destination, in destination units squared per source unit.
+        For x, y and z of the destination, in destination units squared per source unit, or with
+        the basis ``r^2 log r`` per source unit squared.
 
     Examples
     --------
@@ -311,5 +315,6 @@ def bending_energy(spline: Spline) -> Matrix:
     """
     if not len(spline.source):
         return np.zeros(3)
-    bent = cdist(spline.source, spline.source) @ spline.weights
-    return np.asarray(np.maximum(-np.sum(spline.weights * bent, axis=0), 0.0))
+    bent = spline.basis.of(cdist(spline.source, spline.source)) @ spline.weights
+    energy = spline.basis.sign * np.sum(spline.weights * bent, axis=0)
+    return np.asarray(np.maximum(energy, 0.0))

@@ -74,6 +74,8 @@ def solve_ordinary(
 ) -> Spline | None:
     """Solve pairs about which there is nothing to say, but that they may be nearly planar.
 
+    With the basis r.
+
     Parameters
     ----------
     source, destination

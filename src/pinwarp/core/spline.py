@@ -2,17 +2,16 @@
 
 ``f(v) = a1 + a2 v_x + a3 v_y + a4 v_z + sum_i w_i |u_i - v|`` (Bookstein, IEEE PAMI 11 (1989);
 basis ``U(r) = r`` in 3D: Gunz, Mitteroecker and Bookstein 2005). The weights shown to the user
-belong to ``U = +r``, as in the equation, whatever the solver uses inside. The story of the
-penalty's sign is told in :mod:`pinwarp.tps3d`.
+belong to ``U = +r``, as in the equation, whatever the solver uses inside; with another
+:class:`~pinwarp.core.basis.Basis` ``U(|u_i - v|)`` takes the place of the distance. The story of
+the penalty's sign is told in :mod:`pinwarp.tps3d`.
 """
 
 from __future__ import annotations
 
 import math
-import reprlib
 import threading
 from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,44 +21,19 @@ from scipy.spatial.distance import pdist
 
 from pinwarp.core import kernel
 from pinwarp.core.alignment import fit_similarity
-from pinwarp.core.errors import (
-    LandmarkCountError,
-    PenaltyError,
-    PenaltyTypeError,
-    SingularSystemError,
-)
+from pinwarp.core.basis import Basis
+from pinwarp.core.errors import LandmarkCountError, SingularSystemError
 from pinwarp.core.factor import SourceFactor, factorise, solve_upper
 from pinwarp.core.findings import Finding, FindingKind
 from pinwarp.core.lengths import rounding_among
-from pinwarp.core.positions import as_positions, in_range, is_real_number, quiet
+from pinwarp.core.penalty import PenaltyConvention, check_convention, check_penalty
+from pinwarp.core.positions import as_positions, in_range, quiet
 
 Matrix = NDArray[np.float64]
 
 # LAPACK called through scipy is the fastest Cholesky but keeps the interpreter's lock: 10 ms for
 # this many landmarks. Beyond, a worker takes numpy's, so that the window lives meanwhile.
 HOLDS_UP_LITTLE = 1200
-
-
-class PenaltyConvention(StrEnum):
-    """Which equation the warping penalty enters, and with which sign.
-
-    ``REGULARISING`` solves ``K - s I`` with ``U = +r``: it penalises at every value, from
-    interpolation at 0 to the affine fit at infinity. ``OPYNSIM`` solves the published
-    ``K + alpha I`` with ``U = +r``, as OPynSim and thin-plate-spline >= 1.2 do, poles included.
-
-    Examples
-    --------
-    >>> PenaltyConvention("opynsim").sign, PenaltyConvention.REGULARISING.sign
-    (-1, 1)
-    """
-
-    REGULARISING = "regularising"
-    OPYNSIM = "opynsim"
-
-    @property
-    def sign(self) -> int:
-        """The sign with which the penalty is added to the eigenvalues of ``N``."""
-        return 1 if self is PenaltyConvention.REGULARISING else -1
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,13 +45,15 @@ class Spline:
     source : (n, 3) float64
         The source landmarks, in mesh units.
     weights : (n, 3) float64
-        ``w_i`` for ``U = +r`` (dimensionless).
+        ``w_i`` for ``U = +r`` (dimensionless) or ``+r^2 log r`` (one per source length).
     affine : (4, 3) float64
         Rows ``a1 ... a4``; ``a1`` in mesh units of the destination.
     penalty, convention
         What it was solved with.
     findings
         What the solve noticed.
+    basis
+        What it is built of.
     """
 
     source: Matrix
@@ -86,60 +62,14 @@ class Spline:
     penalty: float
     convention: PenaltyConvention
     findings: tuple[Finding, ...] = ()
+    basis: Basis = Basis.R
 
     @quiet
     def evaluate(self, points: ArrayLike) -> Matrix:
         """Warp (m, 3) points in double precision; RangeError where no number can hold one."""
         points = kernel.as_points(points)
-        warped = kernel.evaluate(self.source, self.weights, self.affine, points)
+        warped = kernel.evaluate(self.source, self.weights, self.affine, points, self.basis)
         return in_range(warped, points)
-
-
-def check_penalty(penalty: object) -> float:
-    """Return the penalty as a float; infinity, the affine fit, is allowed.
-
-    Examples
-    --------
-    >>> check_penalty(np.float32(0.5)), check_penalty(math.inf)
-    (0.5, inf)
-    """
-    if type(penalty) is float and penalty >= 0:
-        return penalty
-    if isinstance(penalty, np.ndarray) and penalty.ndim == 0:
-        # An array without dimensions is a number; one that is masked stays what it is.
-        penalty = penalty[()]
-    if not is_real_number(penalty):
-        raise PenaltyTypeError(
-            f"The warping penalty is {reprlib.repr(penalty)}, which is not a number; "
-            "it must be 0 or more."
-        )
-    try:
-        value = float(penalty)
-    except OverflowError:
-        raise PenaltyError("The warping penalty is too large for a number.") from None
-    if math.isnan(value) or value < 0:
-        raise PenaltyError(f"The warping penalty is {value}; it must be 0 or more.")
-    return value
-
-
-def check_convention(convention: PenaltyConvention | str) -> PenaltyConvention:
-    """Return the convention, which may be given by its value.
-
-    Examples
-    --------
-    >>> check_convention("opynsim") is PenaltyConvention.OPYNSIM
-    True
-    >>> check_convention("published")  # doctest: +ELLIPSIS
-    Traceback (most recent call last):
-    pinwarp.core.errors.PenaltyError: The convention is 'published'; it must be ...
-    """
-    try:
-        return PenaltyConvention(convention)
-    except ValueError:
-        known = " or ".join(repr(member.value) for member in PenaltyConvention)
-        raise PenaltyError(
-            f"The convention is {reprlib.repr(convention)}; it must be {known}."
-        ) from None
 
 
 @quiet
@@ -154,13 +84,14 @@ def solve(
     Parameters
     ----------
     factor
-        The source landmarks, from :func:`~pinwarp.core.factor.factorise`.
+        The source landmarks, from :func:`~pinwarp.core.factor.factorise`, and the basis.
     destination
         (n, 3) destination landmarks, in the destination's mesh unit.
     penalty
-        The warping penalty, a length in mesh units; infinity is the affine fit.
+        The warping penalty, a length in mesh units or, with the basis ``r^2 log r``, an area;
+        infinity is the affine fit.
     convention
-        The equation that it enters, or its value.
+        The equation that it enters, or its value; with the basis ``r^2 log r`` both are one.
 
     Returns
     -------
@@ -185,6 +116,7 @@ def solve(
     """
     displacement, target, linear = displacements(factor, destination)
     penalty, convention = check_penalty(penalty), check_convention(convention)
+    convention = convention.within(factor.basis)
     weights, affine, findings = solve_values(factor, displacement, penalty, convention)
     linear = linear + affine[1:]
     coefficients = np.vstack([target + affine[0] - factor.centre @ linear, linear])
@@ -201,6 +133,7 @@ def solve(
         penalty=penalty,
         convention=convention,
         findings=(*factor.findings, *_conflicts(factor, target_positions, penalty), *findings),
+        basis=factor.basis,
     )
 
 
@@ -255,7 +188,7 @@ def solve_values(
     Returns
     -------
     weights : (n, k)
-        For ``U = +r``.
+        For ``U = +r`` or ``+r^2 log r``, as the factor's basis says.
     affine : (4, k)
         Constant, x, y and z, *about the centre of the source landmarks*.
     findings
@@ -293,8 +226,15 @@ def back_to_landmarks(
     """Return the weights and the affine part about the centre that belong to ``gamma``."""
     columns = factor.rank + 1
     affine = solve_upper(factor, top - factor.coupling @ gamma)
-    weights = -factor.rotate_back(np.vstack([np.zeros((columns, gamma.shape[1])), gamma]))
-    return weights, np.vstack([factor.scale * affine[:1], factor.directions.T @ affine[1:]])
+    weights = factor.rotate_back(np.vstack([np.zeros((columns, gamma.shape[1])), gamma]))
+    weights *= factor.basis.sign * factor.scale / factor.strength
+    constant = factor.scale * affine[:1]
+    if factor.basis is Basis.R2_LOG_R:
+        # The logarithm was of lengths in units of the scale: sum w_i |u_i - v|^2 is the same for
+        # every v, by the side conditions.
+        squares = np.sum((factor.source - factor.centre) ** 2, axis=1)
+        constant = constant - math.log(factor.scale) * (squares @ weights)
+    return weights, np.vstack([constant, factor.directions.T @ affine[1:]])
 
 
 def _bend(
@@ -304,11 +244,12 @@ def _bend(
     at_one_place = factor.rank == 0 and penalty == 0
     if not len(values) or math.isinf(penalty) or at_one_place:
         return np.zeros_like(values), ()
+    convention = convention.within(factor.basis)
     regularising = convention is PenaltyConvention.REGULARISING or penalty == 0
     if regularising and factor.well_spaced and not factor.has_modes:
         # One solve alone: Cholesky is a tenth of the eigendecomposition's work.
         shifted = factor.bending.copy()
-        shifted.flat[:: len(shifted) + 1] += penalty / factor.scale
+        shifted.flat[:: len(shifted) + 1] += penalty / factor.strength
         solved = cholesky_solve(shifted, values)
         if solved is not None:
             return solved, ()
@@ -318,7 +259,7 @@ def _bend(
     findings: tuple[Finding, ...] = ()
     if not regularising:
         findings = _check_poles(factor, penalty)
-    inverse = np.divide(factor.scale, shifts, out=np.zeros_like(shifts), where=usable)
+    inverse = np.divide(factor.strength, shifts, out=np.zeros_like(shifts), where=usable)
     return vectors @ (inverse[:, None] * (vectors.T @ values)), findings
 
 
@@ -396,4 +337,12 @@ def identity(source: ArrayLike = ()) -> Spline:
     return Spline(source, np.zeros_like(source), affine, 0.0, PenaltyConvention.REGULARISING)
 
 
-__all__ = ["PenaltyConvention", "Spline", "check_penalty", "factorise", "identity", "solve"]
+__all__ = [
+    "PenaltyConvention",
+    "Spline",
+    "check_convention",
+    "check_penalty",
+    "factorise",
+    "identity",
+    "solve",
+]

@@ -48,7 +48,10 @@ EXCHANGED = 60
 
 @quiet
 def suspects(factor: SourceFactor, destination: ArrayLike) -> tuple[Finding, ...]:
-    """Judge the pairs by what they say about one another, at no penalty.
+    """Judge the pairs by what they say about one another, at no penalty and in the basis r.
+
+    The fields and the chances are of the basis r whatever the factor's: a mistake is one by
+    whichever spline the bones are warped.
 
     Parameters
     ----------
@@ -76,6 +79,7 @@ def suspects(factor: SourceFactor, destination: ArrayLike) -> tuple[Finding, ...
     swapped [3, 7]
     displaced [5]
     """
+    factor = factor.in_basis_r
     unexplained, _, _ = displacements(factor, destination)
     target = np.asarray(destination, dtype=np.float64)
     rounding = ROUNDING * float(np.abs(target).max())
