@@ -25,6 +25,7 @@ KEYS = {
     "components": str,
     "blend": float,
     "planar": bool,
+    "basis": str,
     "flagged": bool,
     "rms_residual": float,
     "rms_leave_one_out": float,
@@ -164,3 +165,13 @@ def test_landmarks_in_another_frame_or_unit_are_flagged(pinwarp_command, tmp_pat
     assert "With x and y negated" in " ".join(outcome.stdout.split())
     write_session(path, sample)
     assert "another frame" not in pinwarp_command("check", path, "--strict").stdout
+
+
+def test_a_warp_can_be_checked_with_another_basis(pinwarp_command, session):
+    own, other = (
+        json.loads(pinwarp_command("check", session, "--json", *options).stdout)
+        for options in ((), ("--basis", "r2logr"))
+    )
+    assert (own["basis"], other["basis"]) == ("r", "r2logr")
+    assert own["rms_leave_one_out"] != other["rms_leave_one_out"]
+    assert "Basis" in pinwarp_command("check", session, "--basis", "r2logr").stdout

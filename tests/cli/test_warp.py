@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from tests.session.study import bone, shape
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.components import Components
 from pinwarp.core.landmarks import Landmark, Side, as_position
 from pinwarp.core.mesh import Mesh
@@ -209,3 +210,22 @@ def test_a_source_that_moved_is_found_again_by_its_content(
     out = tmp_path / "a.ply"
     pinwarp_command("warp", session, "-o", out)
     assert np.allclose(read_mesh(out).mesh.vertices, expected.vertices)
+
+
+def test_another_basis_can_be_asked_for_with_a_penalty_that_means_something(
+    pinwarp_command, session, tmp_path
+):
+    pinwarp_command("warp", session, "--basis", "r2logr", "-o", tmp_path / "a.ply")
+    opened = edits.set_basis(read_session(session), Basis.R2_LOG_R)
+    assert np.array_equal(read_mesh(tmp_path / "a.ply").mesh.vertices, warped_mesh(opened).vertices)
+    write_session(session, edits.set_penalty(read_session(session), 2.0))
+    refused = pinwarp_command(
+        "warp", session, "--basis", "r2logr", "-o", tmp_path / "b.ply", exit_code=2
+    )
+    assert "penalty of 2 mm is for the basis r: say --penalty in mm²" in " ".join(
+        refused.stderr.split()
+    )
+    asked = ("--basis", "r2logr", "--penalty", "40", "-o", tmp_path / "c.ply")
+    pinwarp_command("warp", session, *asked)
+    expected = warped_mesh(edits.set_penalty(opened, 40.0)).vertices
+    assert np.array_equal(read_mesh(tmp_path / "c.ply").mesh.vertices, expected)

@@ -75,8 +75,8 @@ def test_nonsense_is_refused_in_words_and_changes_nothing(user, panel, text):
 
 def test_opynsim_shows_its_poles_and_warns(user, panel):
     assert panel.slider.poles == ()
-    panel.convention.setFocus()
-    user.press(Qt.Key.Key_Down, widget=panel.convention)
+    panel.equation.setFocus()
+    user.press(Qt.Key.Key_Down, widget=panel.equation)
     assert user.session.settings.convention is PenaltyConvention.OPYNSIM
     assert len(panel.slider.poles) == 12
     assert all(0 < share < 1 for share in panel.slider.poles)

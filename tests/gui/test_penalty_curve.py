@@ -170,8 +170,8 @@ def test_below_five_pairs_there_is_no_curve(user, panel):
 
 
 def test_the_published_convention_has_the_curve_but_no_suggestion(user, noisy_panel):
-    noisy_panel.convention.setFocus()
-    user.press(Qt.Key.Key_Down, widget=noisy_panel.convention)
+    noisy_panel.equation.setFocus()
+    user.press(Qt.Key.Key_Down, widget=noisy_panel.equation)
     assert user.session.settings.convention is PenaltyConvention.OPYNSIM
     assert "regularising" in noisy_panel.plot.plotted.title
     assert not noisy_panel.suggested.isEnabled()

@@ -17,6 +17,7 @@ from tests.cli.conftest import Command
 from tests.core.bones import bone, landmarks, truth
 from tests.core.femur import femur_landmarks, femur_meshes
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.landmarks import Landmark, Side, as_position
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.spline import PenaltyConvention
@@ -397,6 +398,7 @@ NOT_YET = {
     "A warp of the OPYNSIM convention can be refined at penalty 0 only": lambda s: (
         edits.set_convention(edits.set_penalty(s, 3.0), PenaltyConvention.OPYNSIM)
     ),
+    "A warp can be refined with the basis r only": lambda s: edits.set_basis(s, Basis.R2_LOG_R),
     "At an infinite penalty the warp is the affine fit": lambda s: edits.set_penalty(s, np.inf),
 }
 REFUSED = {

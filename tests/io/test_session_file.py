@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.components import Components
 from pinwarp.core.errors import (
     FileFormatError,
@@ -24,7 +25,13 @@ from pinwarp.core.landmarks import Landmark, Role
 from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import PenaltyConvention
 from pinwarp.io.refinement_record import RefinementRecord
-from pinwarp.io.session_file import MeshReference, SessionRecord, read_session, write_session
+from pinwarp.io.session_file import (
+    MeshReference,
+    SessionRecord,
+    read_session,
+    session_text,
+    write_session,
+)
 
 from . import strategies
 
@@ -122,6 +129,7 @@ def test_an_empty_session_comes_back(tmp_path: Path) -> None:
     blend=st.floats(0, 1),
     unit=st.sampled_from(["mm", "m", ""]),
     planar=st.booleans(),
+    basis=st.sampled_from(Basis),
 )
 def test_any_session_comes_back_exactly(
     tmp_path_factory: pytest.TempPathFactory,
@@ -132,11 +140,14 @@ def test_any_session_comes_back_exactly(
     blend: float,
     unit: str,
     planar: bool,
+    basis: Basis,
 ) -> None:
     path = tmp_path_factory.getbasetemp() / "a.pinwarp.csv"
     record = SessionRecord(
         tuple(landmarks),
-        settings=WarpSettings(penalty, convention, components, blend, planar),
+        settings=WarpSettings(
+            penalty, convention, components, blend, planar and basis is Basis.R, basis
+        ),
         unit=unit,
     )
     write_session(path, record)
@@ -287,6 +298,16 @@ def test_changes_by_hand_that_change_nothing_are_read(
         ("opynsim", "other", "line 5: The convention 'other'"),
         ("# unit: m\n", "# unit: m\n# unit: mm\n", "line 7: Unit is given twice"),
         ("planar: yes", "planar: maybe", "line 7: Treat_as_planar is 'maybe'"),
+        (
+            "# unit: m\n",
+            "# unit: m\n# basis: cubic\n",
+            "line 7: The basis 'cubic' is none of r, r2logr",
+        ),
+        (
+            "# unit: m\n",
+            "# unit: m\n# basis: r2logr\n",
+            "line 7: Landmarks can be treated as planar",
+        ),
         ("destination_y,", "", "line 11: The column 'destination_y' is missing"),
         ("note,colour", "note,note", "line 11: Two columns"),
         ("lateral_epicondyle,pair", "lateral_epicondyle,friend", "line 12: The role 'friend'"),
@@ -317,9 +338,17 @@ def test_a_damaged_session_is_refused_with_its_line(
     assert not isinstance(caught.value, NewerFileError)
 
 
+def test_only_a_session_of_another_basis_is_kept_from_older_programs(tmp_path: Path) -> None:
+    for basis, version in ((Basis.R, "1"), (Basis.R2_LOG_R, "3")):
+        record = SessionRecord(settings=WarpSettings(basis=basis))
+        text = session_text(record)
+        assert text.startswith(f"# pinwarp-session: {version}\n")
+        assert ("# basis: r2logr\n" in text) is (basis is not Basis.R)
+
+
 def test_a_newer_session_is_refused_by_its_version_only(tmp_path: Path) -> None:
-    path = save(tmp_path, "# pinwarp-session: 3\nwhatever\nthis is\n")
-    with pytest.raises(NewerFileError, match=r"newer pinwarp \(version 3\); update pinwarp"):
+    path = save(tmp_path, "# pinwarp-session: 4\nwhatever\nthis is\n")
+    with pytest.raises(NewerFileError, match=r"newer pinwarp \(version 4\); update pinwarp"):
         read_session(path)
 
 

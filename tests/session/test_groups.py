@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from tests.core.bones import bone, landmarks, off_truth, shape, truth
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.curves import PathFinder
 from pinwarp.core.errors import LandmarkError
 from pinwarp.core.groups import Handle
@@ -257,6 +258,7 @@ def test_the_warp_passes_through_landmarks_and_all_that_came_to_rest(session, pl
             lambda s: edits.set_convention(edits.set_penalty(s, 1.0), PenaltyConvention.OPYNSIM),
             "regularising convention only",
         ),
+        (lambda s: edits.set_basis(s, Basis.R2_LOG_R), "with the basis r only"),
     ],
 )
 def test_where_they_cannot_slide_the_warp_is_that_of_the_pairs_and_says_why(session, change, words):

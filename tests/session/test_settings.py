@@ -10,6 +10,7 @@ from datetime import datetime
 import numpy as np
 import pytest
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.components import Components
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Landmark, Side, as_position
@@ -39,6 +40,7 @@ OTHERS = {
     "components": Components.AFFINE,
     "blend": 0.25,
     "planar": True,
+    "basis": Basis.R2_LOG_R,
 }
 # Penalty so that the convention matters, and landmarks near one plane so that planar does.
 BASE = WarpSettings(penalty=0.05)
@@ -125,9 +127,10 @@ def test_a_setting_comes_back_from_the_coefficients(tmp_path, session, name, suf
     read = read_coefficients(path)
     assert read.settings == changed.settings
     spline = read.spline
-    assert (spline.penalty, spline.convention) == (
+    assert (spline.penalty, spline.convention, spline.basis) == (
         changed.settings.penalty,
         changed.settings.convention,
+        changed.settings.basis,
     )
 
 
@@ -173,7 +176,11 @@ def test_undo_takes_the_setting_back(session, name):
     editor = Editor(session)
     change = getattr(edits, f"set_{name}")
     editor.commit(change(editor.session, OTHERS[name]), "Change")
-    assert editor.session.settings == other(name)
+    expected = other(name)
+    if name == "basis":
+        # The penalty is another figure there.
+        expected = replace(expected, penalty=editor.session.settings.penalty)
+    assert editor.session.settings == expected
     assert editor.is_dirty
     editor.undo()
     assert editor.session.settings == BASE

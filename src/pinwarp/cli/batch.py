@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from pinwarp.cli.many import Again, Jobs, Scheduler, do_all
-from pinwarp.cli.options import Applied, Blend, Penalty, with_options
+from pinwarp.cli.options import Applied, BasisOption, Blend, Penalty, with_options
 from pinwarp.cli.refine import Feature, Tolerance, Turn
 from pinwarp.cli.suggest import MirrorOption, Partial
 from pinwarp.cli.telling import tell_notes
@@ -73,6 +73,7 @@ def batch(
     penalty: Penalty = None,
     components: Applied = None,
     blend: Blend = None,
+    basis: BasisOption = None,
     suffix: Annotated[
         str | None,
         typer.Option(
@@ -119,7 +120,7 @@ def batch(
         raise PinwarpError("--mirror and --partial are about suggesting: add --suggest.")
     subjects = with_specimens(read_manifest(manifest, suggested=suggest))
     shared = _source(source, source_landmarks, passengers, session)
-    shared = with_options(shared, penalty, components, blend)
+    shared = with_options(shared, penalty, components, blend, basis)
     files = (source_landmarks, passengers, session)
     given = [located(path)[0] for path in files if path is not None]
     tasks = batches.plan(

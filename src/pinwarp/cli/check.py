@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from pinwarp.cli.options import SessionFile
+from pinwarp.cli.options import BasisOption, SessionFile, with_basis
 from pinwarp.core.findings import Severity
 from pinwarp.core.lengths import Ruler
 from pinwarp.core.words import counted
@@ -32,6 +32,7 @@ SLID = "{:,} semilandmarks: a small distance then proves little"
 
 def check(
     session: SessionFile,
+    basis: BasisOption = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print figures for a program.")] = False,
     strict: Annotated[
         bool,
@@ -45,6 +46,8 @@ def check(
 ) -> None:
     """Print how good a session's warp is: residuals, leave-one-out errors, findings, distances."""
     opened = read_session(session)
+    if basis is not None:
+        opened = with_basis(opened, basis)
     checked = checking.check(opened)
     if as_json:
         about = _about(opened)
@@ -118,11 +121,12 @@ def _of_groups(checked: checking.Check, decimals: int, ruler: Ruler) -> Table:
 
 def _figures(session: Session, checked: checking.Check) -> list[tuple[str, str]]:
     ruler = rulers_of(session).session
+    of_penalty = session.settings.penalty_ruler(ruler)
     figures = [
         ("Session", session_hash(session)),
         *settings_in_words(session.settings, session.unit),
-        ("Suggested penalty", _length(checked.suggested_penalty, ruler, "none")),
-        *_flatness(checked, ruler),
+        ("Suggested penalty", _length(checked.suggested_penalty, of_penalty, "none")),
+        *_flatness(checked, of_penalty),
         (
             "Flexibility",
             "not defined" if checked.flexibility is None else f"{checked.flexibility:.1%}",

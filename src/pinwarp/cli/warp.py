@@ -7,7 +7,15 @@ from typing import Annotated
 
 import typer
 
-from pinwarp.cli.options import Applied, Blend, Force, Penalty, SessionFile, with_options
+from pinwarp.cli.options import (
+    Applied,
+    BasisOption,
+    Blend,
+    Force,
+    Penalty,
+    SessionFile,
+    with_options,
+)
 from pinwarp.cli.telling import BAD_USAGE, progress_bar, refuse_existing, tell_error, tell_notes
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
@@ -40,6 +48,7 @@ def warp(
     penalty: Penalty = None,
     components: Applied = None,
     blend: Blend = None,
+    basis: BasisOption = None,
     force: Force = False,
 ) -> None:
     """Warp meshes and landmark files as a session warps its source.
@@ -48,7 +57,8 @@ def warp(
     """
     # Only what is to be warped is read, or looked for where it has moved.
     meshes = () if inputs else (Side.SOURCE,)
-    opened = with_options(read_session(session, meshes=meshes), penalty, components, blend)
+    read = read_session(session, meshes=meshes)
+    opened = with_options(read, penalty, components, blend, basis)
     if not inputs and opened.source is None:
         raise PinwarpError(f"{session.name} has no source mesh: name the files to warp.")
     if opened.groups and rest_in_use(opened) is None:

@@ -98,6 +98,18 @@ class Ruler:
         number = self.number(length, digits)
         return number if math.isinf(length) else f"{number} {self.unit}".rstrip()
 
+    def to_the(self, power: int) -> Ruler:
+        """Return the ruler of areas for the power 2; itself for 1.
+
+        Examples
+        --------
+        >>> Ruler("mm", 1000.0).to_the(2).text(3e-6)
+        '3 mm²'
+        """
+        if power == 1:
+            return self
+        return Ruler(f"{self.unit}²" if self.unit else "", self.factor**power)
+
     def length(self, text: str) -> float:
         """Return a typed length as it is stored: in the unit that is shown unless it names one.
 

@@ -182,6 +182,8 @@ def prior_prediction(factor: SourceFactor, destination: ArrayLike, size: float) 
     >>> bool(0 < near < far < 1)
     True
     """
+    # What is known of bones is told in the basis r.
+    factor = factor.in_basis_r
     places = kernel.as_points(destination)
     spread = float(np.sqrt(np.mean(np.sum((places - places.mean(axis=0)) ** 2, axis=1))))
     # The variance between two places d apart is 2 sigma^2 d / scale.

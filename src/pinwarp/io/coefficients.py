@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.errors import FileFormatError, PinwarpError
 from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
 from pinwarp.core.spline import Spline
@@ -27,11 +28,20 @@ from pinwarp.io.setting_keys import plain_settings, settings_of
 COEFFICIENT_SUFFIXES = (".json", ".npz")
 FORMAT = "pinwarp-coefficients"
 # Told apart by readers; raised when an older reader would misread.
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
+# With the basis r, older ones read rightly.
+_FORMAT_OF = {Basis.R: 1, Basis.R2_LOG_R: 2}
+_TERMS = {
+    Basis.R: ("|u_i - v|", "U(r) = +r"),
+    Basis.R2_LOG_R: (
+        "U(|u_i - v|)",
+        "U(r) = +r^2 log r, with the natural logarithm and U(0) = 0",
+    ),
+}
 EQUATION = (
-    "f(v) = a1 + a2 * v_x + a3 * v_y + a4 * v_z + sum over i of w_i * |u_i - v|, where v is a "
+    "f(v) = a1 + a2 * v_x + a3 * v_y + a4 * v_z + sum over i of w_i * {term}, where v is a "
     "place of the source, u_i are the rows of source_landmarks, w_i the rows of weights, a1 to "
-    "a4 the rows of affine, and |.| is the Euclidean length. The basis is U(r) = +r. f(v) is in "
+    "a4 the rows of affine, and |.| is the Euclidean length. The basis is {basis}. f(v) is in "
     "the frame and unit of the destination; with the components 'without pose' it is in the "
     "frame of the source. No penalty and no blend is to be added: they are in the coefficients. "
     "A mesh that is scaled is multiplied by that number first; one that is mirrored across an "
@@ -74,7 +84,7 @@ class Coefficients:
     Parameters
     ----------
     spline
-        The warp as applied: its landmarks, weights for ``U = +r`` and affine rows ``a1 ... a4``.
+        The warp as applied: its landmarks, weights for the basis and affine rows ``a1 ... a4``.
     names
         Of the landmarks, row by row.
     unit
@@ -177,6 +187,18 @@ def read_coefficients(path: str | Path) -> Coefficients:
         ) from error
 
 
+def equation_of(basis: Basis) -> str:
+    """Return the equation of a warp in words and signs that any program can follow.
+
+    Examples
+    --------
+    >>> "The basis is U(r) = +r." in equation_of(Basis.R)
+    True
+    """
+    term, name = _TERMS[basis]
+    return EQUATION.format(term=term, basis=name)
+
+
 def _suffix(path: str | Path) -> str:
     suffix = Path(path).suffix.lower()
     if suffix not in COEFFICIENT_SUFFIXES:
@@ -193,10 +215,10 @@ def _fields(coefficients: Coefficients) -> dict[str, Any]:
     spline = coefficients.spline
     return {
         "format": FORMAT,
-        "format_version": FORMAT_VERSION,
+        "format_version": _FORMAT_OF[spline.basis],
         "pinwarp": coefficients.version,
         "session": coefficients.session,
-        "equation": EQUATION,
+        "equation": equation_of(spline.basis),
         "unit": coefficients.unit,
         **plain_settings(coefficients.settings),
         "source_sha256": coefficients.source_sha256,
@@ -264,6 +286,7 @@ def _coefficients(fields: Mapping[str, Any]) -> Coefficients:
         affine=arrays["affine"],
         penalty=settings.penalty,
         convention=settings.convention,
+        basis=settings.basis,
     )
     return Coefficients(
         spline=spline,

@@ -20,6 +20,7 @@ from pinwarp.io.refinement_record import RefinementRecord, refinement_text
 from pinwarp.io.session_header import (
     CORRECT,
     PLAIN,
+    RICH,
     VERSION,
     header_line,
     is_header,
@@ -127,8 +128,11 @@ def session_text(record: SessionRecord, folder: Path | None = None) -> str:
     '# pinwarp-session: 1'
     """
     refined = record.refinement
-    is_plain = refined is None and not record.groups
-    header = [("pinwarp-session", str(PLAIN if is_plain else VERSION))]
+    version = PLAIN if refined is None and not record.groups else RICH
+    if record.settings.basis is not USUAL_SETTINGS.basis:
+        # Who does not know the basis must not warp with another.
+        version = VERSION
+    header = [("pinwarp-session", str(version))]
     for key, mesh in (
         ("source_mesh", record.source_mesh),
         ("destination_mesh", record.destination_mesh),

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from pinwarp.core.errors import FileFormatError, NewerFileError
+from pinwarp.core.errors import FileFormatError, NewerFileError, PinwarpError
 from pinwarp.core.mirror import AXES
 from pinwarp.core.settings import WarpSettings
 from pinwarp.io.csv_cells import as_sentence, number_of, shortened
@@ -19,10 +19,12 @@ from pinwarp.io.mesh_reference import MeshReference, mesh_reference
 from pinwarp.io.refinement_record import RefinementRecord, refinement_of
 from pinwarp.io.setting_keys import SETTING_KEYS
 
-VERSION = 2
-"""The newest version of the format that is known."""
+VERSION = 3
+"""The newest version of the format that is known: with another basis than r."""
+RICH = 2
+"""The version of a session with groups or a refinement."""
 PLAIN = 1
-"""The version of a session without groups and refinement, which older ones can read."""
+"""The version of any other, which the oldest can read."""
 CORRECT = "Correct it in a text editor, or use an earlier copy of the file."
 
 _FIELDS = {
@@ -215,7 +217,11 @@ def read_values(
                 )
             known[f"{side}_mesh"] = replace(mesh, **{how: value})
     if chosen:
-        known["settings"] = WarpSettings(**chosen)
+        try:
+            known["settings"] = WarpSettings(**chosen)
+        except PinwarpError as error:
+            # Each is a setting, but not beside the others.
+            raise FileFormatError(path, f"{error} {CORRECT}", lines.get("basis")) from None
     return known, tuple(unknown)
 
 

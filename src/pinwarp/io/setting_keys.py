@@ -8,6 +8,7 @@ from dataclasses import fields
 from enum import StrEnum
 from typing import Any, NamedTuple
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.components import Components
 from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
 from pinwarp.core.spline import PenaltyConvention
@@ -49,6 +50,12 @@ def _components(text: str) -> Components:
     return Components(text)
 
 
+def _basis(text: str) -> Basis:
+    if text not in set(Basis):
+        raise ValueError(f"the basis {shortened(text)} is none of {', '.join(Basis)}")
+    return Basis(text)
+
+
 def _blend(text: str) -> float:
     value = number_of(text, ",")
     if not 0 <= value <= 1:
@@ -86,7 +93,10 @@ SETTING_KEYS = {
     "treat_as_planar": SettingKey("planar", _planar),
     "components": SettingKey("components", _components),
     "blend": SettingKey("blend", _blend),
+    "basis": SettingKey("basis", _basis),
 }
+# What older files do not say was as usual.
+_NEWER = frozenset({"basis"})
 # Files of coefficients and figures call them by their fields, but for these.
 _PLAIN_NAMES = {"penalty": "warping_penalty", "convention": "penalty_convention"}
 
@@ -148,5 +158,6 @@ def settings_of(plain: Mapping[str, Any]) -> WarpSettings:
                 plain[_PLAIN_NAMES.get(field.name, field.name)]
             )
             for field in fields(WarpSettings)
+            if field.name in plain or field.name not in _NEWER
         }
     )

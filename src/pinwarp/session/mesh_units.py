@@ -144,7 +144,7 @@ def scale_side(session: Session, side: Side, factor: float) -> Session:
     """Bring one side to another unit: the mesh, and the landmarks on it.
 
     The file of the mesh is untouched: the session remembers the factor. The warping penalty is
-    a length on the source and goes along with it, so that the warp stays the same.
+    of the source and goes along with it, so that the warp stays the same.
 
     Parameters
     ----------
@@ -170,7 +170,9 @@ def scale_side(session: Session, side: Side, factor: float) -> Session:
         raise LandmarkError(f"There is no {side.value} mesh to scale: open one first.")
     whole = float(file.scaled * factor)
     mesh = file.mesh.with_vertices(factor * file.mesh.vertices)
-    penalty = session.settings.penalty * (factor if side is Side.SOURCE else 1)
+    penalty = session.settings.penalty
+    if side is Side.SOURCE:
+        penalty *= factor**session.settings.basis.power
     session = replace(
         session.with_mesh(side, replace(file, mesh=mesh, scaled=whole)),
         landmarks=scaled(session.landmarks, factor, side),

@@ -214,7 +214,8 @@ class Exports(Capability):
         count = counted(len(session.pairs), "pair")
         if points := semilandmarks_in_words(warp.result):
             count += f", {points}"
-        penalty = f"penalty {self._editor.rulers.session.text(session.settings.penalty, 6)}"
+        ruler = session.settings.penalty_ruler(self._editor.rulers.session)
+        penalty = f"penalty {ruler.text(session.settings.penalty, 6)}"
         what = warp_in_words(session)
         self._tasks.said.emit(f"Exported {path.name}: {what} ({count}, {penalty})")
         for note in not_sliding_note(warp.result):

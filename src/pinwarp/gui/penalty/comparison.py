@@ -24,6 +24,8 @@ _NONE_YET = "There is no previous penalty yet: change the penalty, then hold B t
 class PenaltyTrail:
     """Remembers which penalty was committed before the present one, also by undo and redo.
 
+    A penalty of another basis is another figure, and not remembered.
+
     Examples
     --------
     >>> editor = Editor()
@@ -42,17 +44,19 @@ class PenaltyTrail:
     def __init__(self, editor: Editor) -> None:
         self._editor = editor
         self._present = editor.committed.settings.penalty
+        self._basis = editor.committed.settings.basis
         self.previous: float | None = None
 
     def follow(self) -> None:
         """Look at what is committed now."""
         editor, penalty = self._editor, self._editor.committed.settings.penalty
-        if editor.undo_label is None and editor.redo_label is None:
+        basis = editor.committed.settings.basis
+        if (editor.undo_label is None and editor.redo_label is None) or basis is not self._basis:
             # Another session: what was before it is nobody's previous penalty.
             self.previous = None
         elif penalty != self._present:
             self.previous = self._present
-        self._present = penalty
+        self._present, self._basis = penalty, basis
 
 
 class PenaltyComparison(Capability):
@@ -116,7 +120,8 @@ class PenaltyComparison(Capability):
             self._say(_NONE_YET)
         elif not self._editor.is_previewing:
             self._preview.show(edits.set_penalty(self._editor.committed, previous))
-            length = self._editor.rulers.session.text(previous, 3)
+            settings = self._editor.committed.settings
+            length = settings.penalty_ruler(self._editor.rulers.session).text(previous, 3)
             self._show_badge(f"B: previous penalty {length} (hold)")
 
     def _on_ended(self) -> None:

@@ -8,21 +8,22 @@ from collections.abc import Sequence
 from qtpy.QtCore import Qt, Signal
 from qtpy.QtGui import QAction
 from qtpy.QtWidgets import (
-    QComboBox,
     QGridLayout,
     QHBoxLayout,
     QLabel,
-    QLineEdit,
     QMenu,
     QPushButton,
     QToolButton,
     QWidget,
 )
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.factor import SourceFactor
 from pinwarp.core.findings import FindingKind
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.quality import PenaltyCurve
 from pinwarp.core.spline import PenaltyConvention
+from pinwarp.gui.penalty.exact import ExactPenalty, equation_of
 from pinwarp.gui.penalty.figures import (
     Notes,
     PenaltyFigures,
@@ -33,16 +34,11 @@ from pinwarp.gui.penalty.figures import (
 from pinwarp.gui.penalty.plot import PenaltyPlot, Plotted
 from pinwarp.gui.penalty.slider import STEPS, PenaltySlider
 from pinwarp.gui.style import theme
-from pinwarp.session.edits import UNITS
 from pinwarp.session.judging.quality import LEAST_PAIRS, Quality, penalty_advice
 from pinwarp.session.rulers import Rulers
 from pinwarp.session.session import Session
 from pinwarp.session.warp.result import WarpResult
 
-_CONVENTIONS = {
-    PenaltyConvention.REGULARISING: "Regularising",
-    PenaltyConvention.OPYNSIM: "OPynSim (published)",
-}
 _NO_CURVE = "From five pairs on, leave-one-out error and residual are drawn here."
 _TOO_FEW = "The penalty acts from five pairs on."
 _WAITS = "Suggested: settle first"
@@ -51,6 +47,8 @@ _WAITS_FOR = {
     FindingKind.MIRRORED: "one of the two sets seems to be mirrored",
 }
 _NO_SUGGESTION = "With semilandmarks no penalty is suggested."
+_PLANAR = "Keep the warp tame across the plane that the landmarks lie in"
+_NOT_PLANAR = "Landmarks can be treated as planar with the basis r only"
 _OTHER_CONVENTION = "The curve and its suggestion are of the regularising convention."
 
 
@@ -65,7 +63,7 @@ class PenaltyPanel(QWidget):
 
     penalty_previewed = Signal(float)
     penalty_requested = Signal(float)
-    convention_requested = Signal(object)
+    equation_requested = Signal(object, object)
     planar_requested = Signal(bool)
     unit_requested = Signal(str)
 
@@ -85,32 +83,13 @@ class PenaltyPanel(QWidget):
             "How much the warp is smoothed: left meets every landmark, right is the affine fit"
         )
         self.plot = PenaltyPlot(self.slider, self)
-        self.value = QLineEdit()
-        self.value.setAccessibleName("Warping penalty")
-        self.value.setAlignment(Qt.AlignmentFlag.AlignRight)
-        self.value.setFixedWidth(self.fontMetrics().horizontalAdvance("0.00000000") + 14)
-        self.value.setToolTip("The exact penalty, a length such as 5 or 0.5 cm, or “affine”")
-        # Only where lengths are shown in another unit than that of the files.
-        self.shown_unit = QLabel()
-        self.unit = QComboBox()
-        self.unit.setToolTip("The unit that the files are in: nothing is converted")
+        self.exact = exact = ExactPenalty()
+        self.value, self.unit, self.equation = exact.value, exact.unit, exact.equation
         self.figures = PenaltyFigures()
-        self.convention = QComboBox()
-        # It may be narrower than its longest words.
-        self.convention.setMinimumContentsLength(8)
-        self.convention.setSizeAdjustPolicy(
-            QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon
-        )
-        for convention, text in _CONVENTIONS.items():
-            self.convention.addItem(text, convention)
-        self.convention.setToolTip(
-            "Regularising is right for every new warp; OPynSim reproduces results made elsewhere"
-        )
         self.suggested = QPushButton()
         self.warning = Notes()
         self.planar = QPushButton("Treat as planar")
         self.planar.setCheckable(True)
-        self.planar.setToolTip("Keep the warp tame across the plane that the landmarks lie in")
         self._lay_out(curve, snapshots)
 
         self.slider.sliderPressed.connect(self._on_pressed)
@@ -118,9 +97,10 @@ class PenaltyPanel(QWidget):
         self.slider.sliderReleased.connect(self._on_released)
         self.plot.penalty_requested.connect(self.penalty_requested)
         self.suggested.clicked.connect(self.take_suggested)
-        self.value.editingFinished.connect(self._on_typed)
-        self.unit.textActivated.connect(self.unit_requested)
-        self.convention.activated.connect(self._on_convention)
+        exact.penalty_requested.connect(self.penalty_requested)
+        exact.unit_requested.connect(self.unit_requested)
+        exact.equation_requested.connect(self.equation_requested)
+        exact.refused.connect(self.warning.show_words)
         self.planar.clicked.connect(self.planar_requested)
         self.show_session(self._session)
         self.show_result(None)
@@ -134,13 +114,6 @@ class PenaltyPanel(QWidget):
             label.setFixedWidth(self.fontMetrics().horizontalAdvance(reserved) + 4)
             slider.addWidget(label)
         slider.insertWidget(1, self.slider, 1)
-        exact = QHBoxLayout()
-        exact.setSpacing(4)
-        exact.addWidget(self.value)
-        exact.addWidget(self.shown_unit)
-        exact.addWidget(self.unit)
-        exact.addSpacing(theme.SPACE)
-        exact.addWidget(self.convention, 1)
         buttons = QHBoxLayout()
         buttons.setSpacing(4)
         buttons.addWidget(self.suggested, 1)
@@ -161,7 +134,7 @@ class PenaltyPanel(QWidget):
         grid.setVerticalSpacing(4)
         grid.setColumnStretch(0, 1)
         grid.addWidget(self.plot, 0, 0, 2, 1)
-        grid.addLayout(exact, 0, 1)
+        grid.addWidget(self.exact, 0, 1)
         grid.addWidget(self.figures, 1, 1)
         grid.addLayout(slider, 2, 0)
         grid.addLayout(buttons, 2, 1)
@@ -181,33 +154,15 @@ class PenaltyPanel(QWidget):
         self.show_result(self._result)
         self._show_curve()
         self._show_present()
-        self._show_value()
-
-    def _show_value(self) -> None:
-        if not self.value.hasFocus() or not self.value.isModified():
-            penalty = self._session.settings.penalty
-            self.value.setText(self._rulers.session.number(penalty, 6))
-            self.value.setModified(False)
-        shown = self._rulers.session.unit
-        self.shown_unit.setText(f"{shown}  Files:")
-        self.shown_unit.setVisible(shown != self._session.unit)
+        self.exact.show_rulers(rulers)
 
     def show_session(self, session: Session) -> None:
         """Show the penalty of a session."""
         before, self._session = self._session, session
-        if session.settings.convention != before.settings.convention:
+        if equation_of(session) != equation_of(before):
             self._show_curve()
-        self._show_value()
-        self._show_unit(session.unit)
-        self.convention.setCurrentIndex(self.convention.findData(session.settings.convention))
+        self.exact.show_session(session)
         self._place_handle()
-
-    def _show_unit(self, unit: str) -> None:
-        units = [*UNITS, *([unit] if unit not in UNITS else [])]
-        if [self.unit.itemText(i) for i in range(self.unit.count())] != units:
-            self.unit.clear()
-            self.unit.addItems(units)
-        self.unit.setCurrentText(unit)
 
     def show_result(self, result: WarpResult | None) -> None:
         """Show what the penalty does."""
@@ -221,7 +176,10 @@ class PenaltyPanel(QWidget):
         self.value.setEnabled(self._penalty_acts)
         self.figures.show_flexibility(result.flexibility if result is not None else None)
         self._show_words()
+        basis = self._session.settings.basis
         self.planar.setVisible(is_nearly_planar(result) or self._session.settings.planar)
+        self.planar.setEnabled(basis is Basis.R)
+        self.planar.setToolTip(_PLANAR if basis is Basis.R else _NOT_PLANAR)
         self.planar.setChecked(self._session.settings.planar)
         opynsim = self._session.settings.convention is PenaltyConvention.OPYNSIM
         poles = self._factor.poles.tolist() if self._factor is not None and opynsim else []
@@ -238,6 +196,10 @@ class PenaltyPanel(QWidget):
         self._show_curve()
         self._show_words()
         self._show_present()
+
+    @property
+    def _of_penalty(self) -> Ruler:
+        return self._session.settings.penalty_ruler(self._rulers.session)
 
     @property
     def _penalty_acts(self) -> bool:
@@ -273,7 +235,7 @@ class PenaltyPanel(QWidget):
 
     def _show_words(self) -> None:
         curve = self._curve
-        advice = penalty_advice(curve, self._rulers.session) if curve is not None else ""
+        advice = penalty_advice(curve, self._of_penalty) if curve is not None else ""
         if curve is not None and self._session.settings.convention is PenaltyConvention.OPYNSIM:
             advice = ""
         is_solved = self._result is not None and self._result.spline is not None
@@ -288,7 +250,7 @@ class PenaltyPanel(QWidget):
         there = penalty is not None and penalty == self._session.settings.penalty
         self.suggested.setEnabled(penalty is not None and not there)
         words = "No penalty suggested"
-        ruler = self._rulers.session
+        ruler = self._of_penalty
         tip = penalty_advice(curve, ruler) if curve is not None else self._without_suggestion
         if penalty is not None:
             length = ruler.text(penalty, 3)
@@ -389,29 +351,6 @@ class PenaltyPanel(QWidget):
     def _on_released(self) -> None:
         self._sliding = False
         self.penalty_requested.emit(self._penalty_at_handle())
-
-    def _on_typed(self) -> None:
-        if not self.value.isModified():
-            return
-        text = self.value.text().strip().lower()
-        try:
-            affine = text in ("affine", "inf", "∞")
-            penalty = math.inf if affine else self._rulers.session.length(text)
-            valid = penalty >= 0
-        except ValueError:
-            valid = False
-        self.value.setModified(False)
-        if not valid:
-            self.warning.show_words(
-                f"“{self.value.text()}” is not a penalty: type a number of 0 or more, or “affine”."
-            )
-            self._show_value()
-            return
-        self.penalty_requested.emit(penalty)
-
-    def _on_convention(self, index: int) -> None:
-        # Qt turns the enumeration into a plain string.
-        self.convention_requested.emit(PenaltyConvention(self.convention.itemData(index)))
 
 
 def _tool_button(action: QAction) -> QToolButton:

@@ -82,8 +82,9 @@ class Plotted:
         """Return the figures at a share of the axis, in words."""
         left_out, residual = self.curve.at(1.0 - share)
         penalty = self.factor.penalty_at(1.0 - share)
+        of_penalty = self.ruler.to_the(self.factor.basis.power)
         words = [
-            "affine fit" if math.isinf(penalty) else f"penalty {self.ruler.text(penalty, 3)}",
+            "affine fit" if math.isinf(penalty) else f"penalty {of_penalty.text(penalty, 3)}",
             f"flexibility {1 - share:.0%}",
         ]
         if math.isfinite(left_out):

@@ -79,6 +79,8 @@ class Snapshot:
             return "pairs changed"
         if (before.components, before.blend) != (after.components, after.blend):
             return "applied part changed"
+        if before.basis is not after.basis:
+            return "basis changed"
         if before.convention is not after.convention:
             return "convention changed"
         if replace(before, penalty=after.penalty) != after:
@@ -90,8 +92,9 @@ class Snapshot:
     @property
     def title(self) -> str:
         """The penalty in words."""
-        penalty = self.inputs.settings.penalty
-        return "Affine fit" if math.isinf(penalty) else self.ruler.text(penalty, 3)
+        settings = self.inputs.settings
+        length = settings.penalty_ruler(self.ruler).text(settings.penalty, 3)
+        return "Affine fit" if math.isinf(settings.penalty) else length
 
     @property
     def lines(self) -> tuple[str, ...]:
@@ -184,7 +187,8 @@ class SnapshotStrip(QScrollArea):
         What its context menu holds.
     """
 
-    penalty_requested = Signal(float)
+    # With it the basis: without that a penalty says nothing.
+    settings_requested = Signal(object)
     removal_requested = Signal(object)
     height_changed = Signal()
 
@@ -236,7 +240,7 @@ class SnapshotStrip(QScrollArea):
 
     def _tile(self, snapshot: Snapshot) -> SnapshotTile:
         tile = SnapshotTile(snapshot)
-        tile.taken.connect(lambda: self.penalty_requested.emit(snapshot.inputs.settings.penalty))
+        tile.taken.connect(lambda: self.settings_requested.emit(snapshot.inputs.settings))
         tile.removed.connect(lambda: self.removal_requested.emit(snapshot))
         return tile
 

@@ -9,6 +9,7 @@ import numpy as np
 from qtpy.QtCore import QObject, QRect, QRectF, QSize, Qt
 from qtpy.QtGui import QImage
 
+from pinwarp.core.settings import WarpSettings
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.penalty.figures import tidy_residual
@@ -95,7 +96,7 @@ class Snapshots(Capability):
             ),
         )
         self.strip = strip = SnapshotStrip(self.actions)
-        strip.penalty_requested.connect(self._on_penalty)
+        strip.settings_requested.connect(self._on_settings)
         strip.removal_requested.connect(self._on_removal)
         editor.session_changed.connect(self._on_session)
         warps.result_changed.connect(self._on_result)
@@ -188,8 +189,9 @@ class Snapshots(Capability):
             ruler=self._editor.rulers.session,
         )
 
-    def _on_penalty(self, penalty: float) -> None:
-        self._editor.commit(edits.set_penalty(self._editor.committed, penalty), "Change penalty")
+    def _on_settings(self, settings: WarpSettings) -> None:
+        session = edits.set_basis(self._editor.committed, settings.basis)
+        self._editor.commit(edits.set_penalty(session, settings.penalty), "Change penalty")
 
     def _on_removal(self, snapshot: Snapshot) -> None:
         self.snapshots = tuple(kept for kept in self.snapshots if kept is not snapshot)
@@ -209,7 +211,9 @@ class Snapshots(Capability):
         now = WarpInputs.of(self._editor.session)
         for tile in self.strip.tiles:
             changed = tile.snapshot.what_changed(now)
-            tile.show_state(changed, tile.snapshot.inputs.settings.penalty == now.settings.penalty)
+            settings = tile.snapshot.inputs.settings
+            same = (settings.penalty, settings.basis) == (now.settings.penalty, now.settings.basis)
+            tile.show_state(changed, same)
 
 
 def picture_of(canvas: Canvas) -> QImage:

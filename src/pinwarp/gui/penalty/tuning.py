@@ -5,6 +5,7 @@ from __future__ import annotations
 from qtpy.QtCore import Signal
 from qtpy.QtWidgets import QVBoxLayout, QWidget
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.spline import PenaltyConvention
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import BOTTOM, Capability, Panel
@@ -73,7 +74,7 @@ class PenaltyTuning(Capability):
             lambda penalty: editor.preview(edits.set_penalty(editor.committed, penalty))
         )
         panel.penalty_requested.connect(self._on_penalty)
-        panel.convention_requested.connect(self._on_convention)
+        panel.equation_requested.connect(self._on_equation)
         panel.planar_requested.connect(self._on_planar)
         panel.unit_requested.connect(
             lambda unit: editor.commit(edits.set_unit(editor.committed, unit), "Change unit")
@@ -120,9 +121,11 @@ class PenaltyTuning(Capability):
         session = edits.set_penalty(self._editor.committed, penalty)
         self._editor.commit(session, "Change penalty")
 
-    def _on_convention(self, convention: PenaltyConvention) -> None:
-        session = edits.set_convention(self._editor.committed, convention)
-        self._editor.commit(session, "Change penalty convention")
+    def _on_equation(self, convention: PenaltyConvention, basis: Basis) -> None:
+        before = self._editor.committed
+        session = edits.set_convention(edits.set_basis(before, basis), convention)
+        same = basis is before.settings.basis
+        self._editor.commit(session, "Change penalty convention" if same else "Change basis")
 
     def _on_planar(self, planar: bool) -> None:
         label = "Treat as planar" if planar else "Do not treat as planar"

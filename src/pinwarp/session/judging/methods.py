@@ -8,6 +8,7 @@ import platform
 import numpy as np
 import scipy
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.landmarks import Side
 from pinwarp.core.lengths import Ruler
 from pinwarp.core.spline import PenaltyConvention
@@ -23,10 +24,18 @@ from pinwarp.session.warp.solved import SolvedWarp
 from pinwarp.version import __version__
 
 _SPLINE = (
-    "by a three-dimensional thin-plate spline, f(v) = a1 + a2 v_x + a3 v_y + a4 v_z + "
-    "Σ w_i U(|u_i − v|) with the basis U(r) = r (Bookstein 1989; Gunz, Mitteroecker and "
-    "Bookstein 2005)"
+    "thin-plate spline, f(v) = a1 + a2 v_x + a3 v_y + a4 v_z + Σ w_i U(|u_i − v|) with the basis"
 )
+_BASES = {
+    Basis.R: (
+        f"by a three-dimensional {_SPLINE} U(r) = r (Bookstein 1989; Gunz, Mitteroecker and "
+        "Bookstein 2005)"
+    ),
+    Basis.R2_LOG_R: (
+        f"by a {_SPLINE} U(r) = r² log r, which is that of two dimensions (Bookstein 1989), "
+        "applied in three"
+    ),
+}
 _PENALISED = {
     PenaltyConvention.REGULARISING: (
         "was subtracted from the diagonal of the kernel matrix (K − sI, which penalises bending; "
@@ -37,6 +46,10 @@ _PENALISED = {
         "OPynSim, which does not smooth with this basis)"
     ),
 }
+_ADDED = (
+    "was added to the diagonal of the kernel matrix (K + sI, which penalises bending with this "
+    "basis; Wahba 1990)"
+)
 REFERENCES = (
     "Bookstein FL (1989). Principal warps: thin-plate splines and the decomposition of "
     "deformations. IEEE Trans Pattern Anal Mach Intell 11, 567–585.",
@@ -72,8 +85,9 @@ def methods_of(warp: SolvedWarp, quality: Quality) -> tuple[str, ...]:
     'A source surface'
     """
     session = warp.session
+    basis = _BASES[session.settings.basis]
     sentences = [
-        f"{_surface(session, Side.SOURCE)} was warped to {_destination(session)} {_SPLINE}, solved "
+        f"{_surface(session, Side.SOURCE)} was warped to {_destination(session)} {basis}, solved "
         f"from {counted(len(session.pairs), 'pair')} of homologous landmarks.",
         _penalty(session),
         *_further(warp),
@@ -108,10 +122,9 @@ def _penalty(session: Session) -> str:
         return "The warping penalty was infinite, which leaves the affine fit by least squares."
     if settings.penalty == 0:
         return "Without a penalty, the warp meets every landmark."
-    return (
-        f"A warping penalty of {settings.penalty:.6g} {session.unit} "
-        f"{_PENALISED[settings.convention]}."
-    )
+    unit = settings.penalty_unit(session.unit)
+    entered = _PENALISED[settings.convention] if settings.basis is Basis.R else _ADDED
+    return f"A warping penalty of {settings.penalty:.6g} {unit} {entered}."
 
 
 def _further(warp: SolvedWarp) -> list[str]:

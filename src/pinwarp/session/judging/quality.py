@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinwarp.core.alignment import AffineParts, decompose
+from pinwarp.core.basis import Basis
 from pinwarp.core.components import Components, applied, as_drawn
 from pinwarp.core.errors import RangeError
 from pinwarp.core.factor import SourceFactor
@@ -156,11 +157,23 @@ def judged_at(session: Session, ruler: Ruler) -> str:
     >>> judged_at(session, Ruler("mm"))
     ''
     """
-    penalty = session.settings.penalty
-    if penalty == 0 or len(session.pairs) < LEAST_PAIRS:
+    settings = session.settings
+    if len(session.pairs) < LEAST_PAIRS:
         return ""
-    own = "infinity" if math.isinf(penalty) else ruler.text(penalty)
-    return f"Which pairs look wrong is judged at penalty 0, not at {own}, which spreads an error."
+    basis = "" if settings.basis is Basis.R else " and with the basis r"
+    if settings.penalty == 0:
+        return f"Which pairs look wrong is judged{basis.removeprefix(' and')}." if basis else ""
+    own = settings.penalty_ruler(ruler).text(settings.penalty)
+    own = "infinity" if math.isinf(settings.penalty) else own
+    return (
+        f"Which pairs look wrong is judged at penalty 0{basis}, not at {own}, which spreads an "
+        "error."
+    )
+
+
+def energy_unit(quality: Quality, unit: str) -> str:
+    """Return the unit of the bending energy: a length squared per length, or by its square."""
+    return unit if quality.inputs.settings.basis is Basis.R else ""
 
 
 def named_findings(
@@ -243,7 +256,7 @@ def _judged(result: WarpResult, judge: bool) -> Quality | None:
     judgement: tuple[Finding, ...] | None = () if judge else None
     if judge and enough:
         # Of the pairs alone: a semilandmark is never wrong, since nobody placed it.
-        judgement = _about_pairs(factor, inputs.source, destination)
+        judgement = _about_pairs(factor.in_basis_r, inputs.source, destination)
     return Quality(
         inputs=inputs,
         left_out=left_out,
@@ -339,7 +352,10 @@ def _as_good_in_words(low: float, high: float, ruler: Ruler) -> str:
 def _about_pairs(
     factor: SourceFactor, source: tuple[Position, ...], destination: Matrix
 ) -> tuple[Finding, ...]:
-    """Find what is wrong, at penalty 0: a penalty would spread one pair's error over others."""
+    """Find what is wrong, at penalty 0: a penalty would spread one pair's error over others.
+
+    In the basis r, for which the levels are known.
+    """
     left = reflection_misfit(source, destination)
     if left < MIRRORED:
         # Nothing else can be said before that is put right.

@@ -25,7 +25,13 @@ from pinwarp.session.judging.check import groups_of
 from pinwarp.session.judging.different_units import different_units
 from pinwarp.session.judging.elsewhere import elsewhere
 from pinwarp.session.judging.methods import methods_of
-from pinwarp.session.judging.quality import Quality, judged_at, penalty_advice, quality_of
+from pinwarp.session.judging.quality import (
+    Quality,
+    energy_unit,
+    judged_at,
+    penalty_advice,
+    quality_of,
+)
 from pinwarp.session.judging.suggested import about_suggested
 from pinwarp.session.repeat.spreads import kept_variance, spreads_on_destination
 from pinwarp.session.rulers import rulers_of
@@ -124,7 +130,7 @@ def report_of(
         ),
         remarks=(
             ("To check", judged_at(session, ruler)),
-            ("Warping penalty", _advice(quality.curve, unit)),
+            ("Warping penalty", _advice(quality.curve, session.settings.penalty_unit(unit))),
             (
                 "Pairs",
                 "Residual: how far the warped source landmark is from its destination. "
@@ -304,7 +310,7 @@ def _of_warp(quality: Quality, unit: str) -> list[ReportRow]:
     for axes, value in zip(("xy", "xz", "yz"), parts.shears.tolist(), strict=True):
         figures.append(ReportRow("Affine part", "shear", axes, value))
     for axis, value in zip(_AXES, quality.energy.tolist(), strict=True):
-        figures.append(ReportRow("Bending energy", "warp", axis, value, unit))
+        figures.append(ReportRow("Bending energy", "warp", axis, value, energy_unit(quality, unit)))
     return figures
 
 
@@ -321,7 +327,8 @@ def _chart(curve: PenaltyCurve, session: Session, result: WarpResult) -> str:
     marks = []
     if curve.suggested is not None:
         at = float(np.interp(curve.suggested, curve.penalties, stiff))
-        words = f"suggested: {rulers_of(session).session.text(curve.suggested)}"
+        ruler = session.settings.penalty_ruler(rulers_of(session).session)
+        words = f"suggested: {ruler.text(curve.suggested)}"
         marks.append(Mark(at, words, SUGGESTED_COLOUR))
     elif result.flexibility is not None:
         marks.append(Mark(100 * (1 - result.flexibility), "this warp"))

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.components import Components
-from pinwarp.core.lengths import Ruler, rounding_among
+from pinwarp.core.lengths import ROUNDING, Ruler, rounding_among
 from pinwarp.io.csv_cells import numeral
 from pinwarp.io.csv_text import csv_line
 from pinwarp.session.judging.quality import LEAST_PAIRS, Quality
@@ -88,7 +89,8 @@ def warp_figures(quality: Quality, unit: Ruler | str) -> tuple[FigureRow, ...]:
     tuple of FigureRow
         Translation of the middle of the source landmarks, rotation, scale along the source's
         axes, shear between them, principal stretches, mirroring, and bending energy (in
-        destination units squared per source unit, so that it is a length).
+        destination units squared per source unit, so that it is a length; with the basis
+        ``r^2 log r`` per source unit squared, a number).
 
     Examples
     --------
@@ -106,6 +108,9 @@ def warp_figures(quality: Quality, unit: Ruler | str) -> tuple[FigureRow, ...]:
     ['200.0%', '100.0%', '100.0%']
     """
     parts, noise, ruler = quality.affine, _noise(quality), Ruler.of(unit)
+    is_length = quality.inputs.settings.basis is Basis.R
+    energy = (ruler, noise) if is_length else (Ruler(), ROUNDING)
+    squared = "" if is_length else " squared"
     length = float(np.linalg.norm(parts.translation))
     axis = [
         Figure(name, at, "", _plain(at, 3))
@@ -146,8 +151,8 @@ def warp_figures(quality: Quality, unit: Ruler | str) -> tuple[FigureRow, ...]:
         ),
         FigureRow(
             "Bending energy",
-            _figures([*"xyz", "total"], [*quality.energy, quality.energy.sum()], ruler, noise),
-            f"Of the {_warp_of(quality)}, in destination units squared per source unit",
+            _figures([*"xyz", "total"], [*quality.energy, quality.energy.sum()], *energy),
+            f"Of the {_warp_of(quality)}, in destination units squared per source unit{squared}",
         ),
     )
 
@@ -194,7 +199,7 @@ def _figures(
     k = ruler.factor
     texts = _texts([k * x for x in values], k * max(abs(value) for value in values), k * noise)
     return tuple(
-        Figure(name, value, ruler.unit, f"{text} {ruler.unit}")
+        Figure(name, value, ruler.unit, f"{text} {ruler.unit}".rstrip())
         for name, (value, text) in zip(names, texts, strict=True)
     )
 

@@ -166,7 +166,8 @@ def in_body_frame(session: Session, view: BodyView) -> Session:
         replace(pair, source=as_position(a), destination=as_position(b))
         for pair, a, b in zip(session.pairs, source, destination, strict=True)
     )
-    settings = replace(session.settings, penalty=session.settings.penalty / view.scaled)
+    penalty = session.settings.penalty / view.scaled**session.settings.basis.power
+    settings = replace(session.settings, penalty=penalty)
     return Session(landmarks=landmarks, settings=settings)
 
 

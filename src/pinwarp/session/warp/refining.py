@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.curves import PathFinder
 from pinwarp.core.errors import LandmarkError, MeshError, PinwarpError
 from pinwarp.core.factor import factorise
@@ -292,6 +293,8 @@ class _Given:
     def of(cls, session: Session, options: RefinementOptions) -> _Given:
         source, destination = (_mesh(session, side) for side in Side)
         penalty = session.settings.penalty
+        if session.settings.basis is not Basis.R:
+            raise PinwarpError("A warp can be refined with the basis r only: choose it first.")
         if not session.settings.is_regular:
             raise PinwarpError(
                 "A warp of the OPYNSIM convention can be refined at penalty 0 only: set it to 0, "

@@ -6,6 +6,7 @@ import math
 from dataclasses import fields
 from enum import StrEnum
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.settings import USUAL_SETTINGS, WarpSettings
 from pinwarp.session.warp.component_words import applied_in_words
 
@@ -22,7 +23,7 @@ def settings_in_words(settings: WarpSettings, unit: str) -> tuple[tuple[str, str
     settings
         What is told.
     unit
-        The unit of the penalty.
+        The unit of the meshes.
 
     Examples
     --------
@@ -41,7 +42,10 @@ def settings_in_words(settings: WarpSettings, unit: str) -> tuple[tuple[str, str
 def _words(name: str, value: object, settings: WarpSettings, unit: str) -> str:
     match name, value:
         case "penalty", float():
-            return "infinite (the affine fit)" if math.isinf(value) else f"{value:.6g} {unit}"
+            told = f"{value:.6g} {settings.penalty_unit(unit)}"
+            return "infinite (the affine fit)" if math.isinf(value) else told
+        case "basis", Basis():
+            return value.formula
         case "components", _:
             return applied_in_words(settings)
         case "blend", float():

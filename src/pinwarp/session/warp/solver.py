@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.components import applied
 from pinwarp.core.errors import PinwarpError, RangeError
 from pinwarp.core.factor import SourceFactor, factorise
@@ -177,7 +178,7 @@ class WarpSolver:
                     )
         settings = inputs.settings
         if factor is None:
-            factor = factorise(inputs.source, planar=settings.planar)
+            factor = factorise(inputs.source, planar=settings.planar, basis=settings.basis)
             self.factorisations += 1
         at_rest, not_sliding = self._slid(inputs, moving)
         fit = (factor, np.array(inputs.destination))
@@ -201,6 +202,11 @@ class WarpSolver:
             return None, None
         if inputs.refinement is not None:
             return None, FITTED
+        if inputs.settings.basis is not Basis.R:
+            return None, (
+                "Semilandmarks slide with the basis r only: choose it, or remove curves and "
+                "patches."
+            )
         for known in (self._last, self._moving) if moving else ():
             # Under a refinement nothing had come to rest.
             if known is None or known.inputs.sliding is None or known.inputs.refinement is not None:
@@ -326,7 +332,8 @@ def _swept_by(inputs: WarpInputs, mesh: Mesh | None) -> tuple[object, ...]:
 
 
 def _factorises_the_same(a: WarpInputs, b: WarpInputs) -> bool:
-    return (a.source, a.settings.planar) == (b.source, b.settings.planar)
+    one, other = a.settings, b.settings
+    return (a.source, one.planar, one.basis) == (b.source, other.planar, other.basis)
 
 
 def _solves_the_same(a: WarpInputs, b: WarpInputs) -> bool:
