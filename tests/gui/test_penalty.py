@@ -7,6 +7,7 @@ import math
 import pytest
 from qtpy.QtCore import QPoint, Qt
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.spline import PenaltyConvention
 
 
@@ -116,3 +117,38 @@ def test_the_overlay_can_be_hidden_and_faded(user, panel):
     slider = user.window.parts.overlay.opacity
     user.drag(slider, QPoint(slider.width() // 2, 8), QPoint(4, 8))
     assert viewport.actors["overlay"].prop.opacity < 0.3
+
+
+def test_another_basis_is_chosen_beside_the_penalty_and_undone(user, panel):
+    type_into(user, panel.value, "12.5")
+    share = panel.slider.value()
+    shown = user.window.parts.warps.result.vertices
+    panel.equation.setFocus()
+    for _ in range(2):
+        user.press(Qt.Key.Key_Down, widget=panel.equation)
+    settings = user.session.settings
+    assert settings.basis is Basis.R2_LOG_R
+    assert settings.convention is PenaltyConvention.REGULARISING
+    assert panel.slider.poles == ()
+    assert panel.unit.currentText() == "mm²"
+    # As much flexibility as before, which is another figure of another kind.
+    assert settings.penalty > 100
+    assert abs(panel.slider.value() - share) <= 1
+    assert user.window.parts.warps.result.vertices is not shown
+    user.press(Qt.Key.Key_P)
+    (tile,) = user.window.parts.snapshots.strip.tiles
+    assert "mm²</b>" in tile.words.text()
+    type_into(user, panel.value, "400 mm²")
+    assert user.session.settings.penalty == 400
+    for _ in range(2):
+        user.trigger("undo")
+    assert user.session.settings.convention is PenaltyConvention.OPYNSIM
+    user.trigger("undo")
+    assert panel.equation.currentText() == "Regularising"
+    assert panel.unit.currentText() == "mm"
+    assert user.session.settings.penalty == 12.5
+    # A penalty says nothing without its basis: a snapshot brings both.
+    assert "basis changed" in tile.words.text()
+    user.qtbot.mouseClick(tile, Qt.MouseButton.LeftButton)
+    user.settle()
+    assert user.session.settings == settings
