@@ -11,6 +11,7 @@ from scipy.interpolate import RBFInterpolator
 from pinwarp.core.basis import Basis
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side, positions
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.settings import WarpSettings
 from pinwarp.core.spline import PenaltyConvention
 from pinwarp.io.coefficients import equation_of, read_coefficients, write_coefficients
@@ -134,5 +135,5 @@ def test_pairs_are_judged_in_the_basis_r_and_that_is_said(sample, other):
     ]
     assert judged[0]
     assert judged[0] == judged[1]
-    assert "at penalty 0 and with the basis r, not at" in judged_at(other.settings, "mm")
-    assert judged_at(WarpSettings(basis=LOG)).endswith("judged with the basis r.")
+    assert "at penalty 0 and with the basis r, not at" in judged_at(other.settings, Ruler("mm"))
+    assert judged_at(WarpSettings(basis=LOG), Ruler("mm")).endswith("judged with the basis r.")
