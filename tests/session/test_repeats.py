@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Landmark, Side
 from pinwarp.io.samples import sample_session
@@ -169,6 +170,8 @@ def test_the_noise_of_both_sides_adds_up(session):
     few = replace(session, landmarks=session.landmarks[:4])
     with pytest.raises(PinwarpError, match="five in general position"):
         penalty_of_noise(few, Side.DESTINATION, destination)
+    with pytest.raises(PinwarpError, match="for the basis r only"):
+        penalty_of_noise(edits.set_basis(session, Basis.R2_LOG_R), Side.DESTINATION, destination)
 
 
 def test_repeats_of_the_other_side_another_unit_or_other_names_are_told(session):

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pinwarp.core.basis import Basis
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.factor import factorise
 from pinwarp.core.landmarks import Side, positions
@@ -77,7 +78,8 @@ def penalty_of_noise(session: Session, side: Side, repeats: Repeats) -> PenaltyO
     Raises
     ------
     PinwarpError
-        With fewer than five pairs in general position, or when the repeats are in another unit.
+        With fewer than five pairs in general position, when the repeats are in another unit, or
+        with another basis than r.
 
     Examples
     --------
@@ -95,6 +97,10 @@ def penalty_of_noise(session: Session, side: Side, repeats: Repeats) -> PenaltyO
     True
     """
     _refuse_other_unit(session, side, repeats)
+    if session.settings.basis is not Basis.R:
+        raise PinwarpError(
+            "The penalty that noise asks for is known for the basis r only: choose it first."
+        )
     pairs, measured = session.pairs, repeats.figures
     source, destination = (positions(pairs, one) for one in Side)
     factor = factorise(source, planar=session.settings.planar) if len(pairs) else None
