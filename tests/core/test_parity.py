@@ -58,7 +58,8 @@ def by_scipy(source, destination, v, basis, smoothing):
 def by_fields(source, destination, v, lambda_):
     """What ``fields::Tps(m = 2, scale.type = "unscaled")`` documents, solved densely.
 
-    Its kernel is ``radbas.constant(m, d) * r^(2 m - d)``, and lambda is added to its diagonal.
+    Its kernel is ``radbas.constant(m, d) * r^(2 m - d)``, and lambda is added to its diagonal as it
+    is: so checks the package itself (tests/Tps.test.R, "sanity check", there in the plane).
     """
     constant = gamma(3 / 2 - 2) / (2**4 * pi ** (3 / 2) * gamma(2))
     P = np.column_stack([np.ones(len(source)), source])
