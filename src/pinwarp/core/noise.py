@@ -22,7 +22,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import minimize_scalar
 
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.factor import SourceFactor
@@ -116,6 +115,9 @@ def noise_level(factor: SourceFactor, destination: ArrayLike, variance: float) -
     best = int(np.argmin(found))
     if best == SAMPLES - 1 or found[best] >= float(np.sum(powers)) / variance:
         return NoiseLevel(math.inf, variance, 0.0)
+    # Here, since it brings half of scipy along, and few ask.
+    from scipy.optimize import minimize_scalar
+
     around = (grid[max(best - 1, 0)], grid[best + 1])
     penalty = math.exp(float(minimize_scalar(misfit, bounds=around, method="bounded").x))
     return NoiseLevel(penalty, variance, variance / penalty)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from pinwarp.core.errors import LandmarkError
 from pinwarp.core.lengths import rounding_among
@@ -76,8 +76,8 @@ class Repeatability:
         tail = (1 - CONFIDENCE) / 2
         total = self.freedom * self.variance
         return (
-            total / float(chi2.isf(tail, self.freedom)),
-            total / float(chi2.ppf(tail, self.freedom)),
+            total / float(chdtri(self.freedom, tail)),
+            total / float(chdtri(self.freedom, 1 - tail)),
         )
 
     @property
@@ -149,9 +149,9 @@ def _outstanding(totals: Matrix, freedom: NDArray[np.intp]) -> NDArray[np.bool_]
     known = freedom > 0
     result = np.zeros(len(totals), dtype=bool)
     # The median, for a mean would be made of those that are sought.
-    usual = float(np.median(totals[known] / chi2.median(freedom[known])))
+    usual = float(np.median(totals[known] / chdtri(freedom[known], 0.5)))
     if usual > 0:
         # Of n landmarks (Sidak): each may stand out less often than one set of them does.
         tail = 1 - (1 - BY_CHANCE) ** (1 / known.sum())
-        result[known] = totals[known] > usual * chi2.isf(tail, freedom[known])
+        result[known] = totals[known] > usual * chdtri(freedom[known], tail)
     return result
