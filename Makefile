@@ -8,6 +8,8 @@ SCREEN := xvfb-run -a -s "-screen 0 1920x1080x24"
 export OPENBLAS_NUM_THREADS = 1
 export QT_API = pyside6
 export PYTHON
+# What was compiled once is kept: the tests start the program some hundred times.
+unexport PYTHONDONTWRITEBYTECODE
 
 # The system packages come before everything else, with -j too.
 .NOTPARALLEL:
