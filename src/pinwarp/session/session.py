@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from pinwarp.core.groups import Group, anchored
 from pinwarp.core.landmarks import Landmark, Role, Side, pairs_of
@@ -92,7 +93,8 @@ class Session:
             if landmark.role is Role.PASSENGER and landmark.source is not None
         )
 
-    @property
+    # Found once: a frame of a drag asks a dozen times.
+    @cached_property
     def pairs(self) -> tuple[Landmark, ...]:
         """The landmarks that take part in the solve, in order."""
         return pairs_of(self.landmarks)

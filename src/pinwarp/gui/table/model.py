@@ -29,6 +29,22 @@ SHARE = Qt.ItemDataRole.UserRole
 # Numbers without a column: tips ask for them when they are shown.
 _ONLY_TOLD = ("standardised", "spread")
 _ROWS_MIME = "application/x-pinwarp-landmarks"
+# Qt asks for several more, cell by cell, each time that one is painted.
+_TOLD = frozenset(
+    map(
+        int,
+        (
+            Qt.ItemDataRole.DisplayRole,
+            Qt.ItemDataRole.EditRole,
+            Qt.ItemDataRole.DecorationRole,
+            Qt.ItemDataRole.CheckStateRole,
+            Qt.ItemDataRole.ForegroundRole,
+            Qt.ItemDataRole.TextAlignmentRole,
+            Qt.ItemDataRole.ToolTipRole,
+            SHARE,
+        ),
+    )
+)
 # Made once: Qt asks for them cell by cell whenever the selection changes.
 _BETWEEN_ROWS = Qt.ItemFlag.ItemIsDropEnabled
 _PLAIN_CELL = (
@@ -52,6 +68,7 @@ class LandmarkModel(QAbstractTableModel):
         self._landmarks: list[Landmark] = []
         self._values: dict[str, dict[str, float]] = {}
         self._largest: dict[str, float] = {}
+        self._rows: dict[int, Row] = {}
         # By column: sorting compares thousands of times.
         self._sort_keys: dict[int, list[Any]] = {}
         self._findings: dict[str, list[NamedFinding]] = {}
@@ -66,10 +83,19 @@ class LandmarkModel(QAbstractTableModel):
 
     def row(self, number: int) -> Row:
         """Return a landmark with the numbers found for it."""
-        landmark = self._landmarks[number]
-        name = landmark.name
-        found = {key: values[name] for key, values in self._values.items() if name in values}
-        return Row(landmark, found, self._findings.get(name, ()), self.rulers)
+        row = self._rows.get(number)
+        if row is None:
+            landmark = self._landmarks[number]
+            name = landmark.name
+            found = {key: values[name] for key, values in self._values.items() if name in values}
+            row = Row(landmark, found, self._findings.get(name, ()), self.rulers)
+            self._rows[number] = row
+        return row
+
+    def _forget_rows(self) -> None:
+        """Put together anew what the cells and the order of the rows are made from."""
+        self._rows.clear()
+        self._sort_keys.clear()
 
     def sort_keys(self, column: int) -> Sequence[Any]:
         """Return what the rows are sorted by in a column."""
@@ -99,7 +125,7 @@ class LandmarkModel(QAbstractTableModel):
     def show_rulers(self, rulers: Rulers) -> None:
         """Show all lengths in another unit."""
         self.rulers = rulers
-        self._sort_keys.clear()
+        self._forget_rows()
         self.headerDataChanged.emit(Qt.Orientation.Horizontal, 0, len(COLUMNS) - 1)
         self._announce(range(len(self._landmarks)), 0, len(COLUMNS) - 1)
 
@@ -119,7 +145,7 @@ class LandmarkModel(QAbstractTableModel):
         for first, last in reversed(list(_runs(gone))):
             self.beginRemoveRows(QModelIndex(), first, last)
             del self._landmarks[first : last + 1]
-            self._sort_keys.clear()
+            self._forget_rows()
             self.endRemoveRows()
 
     def _sort_like(self, names: Sequence[str]) -> None:
@@ -132,7 +158,7 @@ class LandmarkModel(QAbstractTableModel):
         old = self.persistentIndexList()
         row = {name: i for i, name in enumerate(after)}
         self._landmarks.sort(key=lambda landmark: place[landmark.name])
-        self._sort_keys.clear()
+        self._forget_rows()
         moved = [self.index(row[before[i.row()]], i.column()) for i in old]
         self.changePersistentIndexList(old, moved)
         self.layoutChanged.emit()
@@ -143,14 +169,14 @@ class LandmarkModel(QAbstractTableModel):
         for first, last in _runs(arriving):
             self.beginInsertRows(QModelIndex(), first, last)
             self._landmarks[first:first] = new[first : last + 1]
-            self._sort_keys.clear()
+            self._forget_rows()
             self.endInsertRows()
 
     def _update(self, new: Sequence[Landmark]) -> None:
         pairs = enumerate(zip(self._landmarks, new, strict=True))
         changed = [i for i, (a, b) in pairs if a is not b and a != b]
         self._landmarks = list(new)
-        self._sort_keys.clear()
+        self._forget_rows()
         self._announce(changed, 0, len(COLUMNS) - 1)
 
     def _announce(self, rows: Sequence[int], first_column: int, last_column: int) -> None:
@@ -195,6 +221,7 @@ class LandmarkModel(QAbstractTableModel):
         if values == before:
             return
         self._values[key] = dict(values)
+        self._rows.clear()
         if key in _ONLY_TOLD:
             return
         number = column_number(key)
@@ -220,6 +247,7 @@ class LandmarkModel(QAbstractTableModel):
     def show_findings(self, findings: Iterable[NamedFinding]) -> None:
         """Mark the landmarks about which something was noticed, the gravest first."""
         before, self._findings = self._findings, {}
+        self._rows.clear()
         for found in findings:
             for name in found.names:
                 self._findings.setdefault(name, []).append(found)
@@ -285,7 +313,7 @@ class LandmarkModel(QAbstractTableModel):
 
     def data(self, index: QModelIndex, role: int = 0) -> Any:
         """Return what a cell shows."""
-        if not index.isValid() or index.row() >= len(self._landmarks):
+        if role not in _TOLD or not index.isValid() or index.row() >= len(self._landmarks):
             return None
         row, column = self.row(index.row()), COLUMNS[index.column()]
         match role:
