@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.distance import cdist
+from scipy.stats import chi2, f
 from tests.core.femur import femur_landmarks, femur_meshes
 from tests.core.mistaken import made_up
 from tests.core.pelvis import pelvis_landmarks, pelvis_meshes
@@ -25,6 +26,12 @@ def around(source, count=60):
     return np.random.default_rng(1).uniform(low - wide, high + wide, (count, 3))
 
 
+def for_few(pairs, axes=3):
+    """Enlarges a deviation of so many pairs as those of Student's t are wider than known ones."""
+    freedom = 3 * (pairs - axes - 1)
+    return np.sqrt(3 * f.ppf(chi2.cdf(4, 3), 3, freedom) / 4)
+
+
 def by_the_bordered_matrix(source, destination, penalty, points, axes=3):
     """The formula to the letter, in coordinates of about 1."""
     centre, size = source.mean(axis=0), extent(source)
@@ -37,7 +44,8 @@ def by_the_bordered_matrix(source, destination, penalty, points, axes=3):
     G = inverse[: len(u), : len(u)]
     sigma2 = np.mean((G @ destination) ** 2 / np.diag(G)[:, None])
     cp = np.column_stack([-cdist(v, u), np.ones(len(v)), v[:, :axes]])
-    return np.sqrt(sigma2 * np.maximum(0, -np.einsum("mi,ij,mj->m", cp, inverse, cp)))
+    variance = sigma2 * np.maximum(0, -np.einsum("mi,ij,mj->m", cp, inverse, cp))
+    return for_few(len(u), axes) * np.sqrt(variance)
 
 
 @given(landmark_pairs(least=6), st.sampled_from([0.0, 0.01, 1.0, 100.0]))
@@ -78,6 +86,7 @@ def test_an_infinite_penalty_is_the_affine_regression_and_the_limit_of_large_one
     residual = destination - hat @ destination
     sigma2 = np.mean(residual**2 / (1 - np.diag(hat))[:, None])
     expected = np.sqrt(sigma2 * np.einsum("mi,ij,mj->m", p, np.linalg.inv(P.T @ P), p))
+    expected *= for_few(len(source))
     at_infinity = prediction_of(factor, destination, np.inf).standard_deviation(points)
     nearly = prediction_of(factor, destination, 1e9 * extent(source)).standard_deviation(points)
     assert np.allclose(at_infinity, expected, rtol=1e-6)
@@ -216,32 +225,47 @@ def covered(cases):
     return [float(np.mean(np.array(shares) < times)) for times in (1, 2, 3)]
 
 
-@pytest.mark.parametrize("count", [10, 25])
+@pytest.mark.parametrize("count", [5, 6, 10, 25])
 def test_fields_of_the_splines_own_kind_keep_to_what_is_promised(count):
     sets = (made_up(count + 30, seed) for seed in range(150))
     cases = ((x.factor.source, x.destination, np.arange(count)) for x in sets)
-    # A normal distribution has 20, 74 and 97 % in space; the deviation itself is estimated.
-    assert covered(cases) == pytest.approx([0.19, 0.69, 0.95], abs=0.03)
+    one, two, three = covered(cases)
+    # A normal distribution has 20, 74 and 97 % in space.
+    assert 0.15 < one < 0.35
+    assert 0.64 < two < 0.8
+    assert (0.78 if count < 7 else 0.92) < three < 0.99
 
 
-def test_a_real_femur_has_as_many_places_within_two_deviations_but_heavier_tails(shared_data):
-    _, source, destination = femur_landmarks(shared_data)
+@pytest.mark.parametrize("count", [5, 6, 8, 14])
+@pytest.mark.parametrize("bone", ["femur", "pelvis"])
+def test_real_bones_have_as_many_places_within_two_deviations_but_heavier_tails(
+    shared_data, bone, count
+):
+    source, destination = _real(shared_data, bone, 60)
     rng = np.random.default_rng(0)
-    cases = ((source, destination, rng.permutation(20)[:14]) for _ in range(200))
-    assert covered(cases) == pytest.approx([0.38, 0.75, 0.88], abs=0.03)
+    cases = ((source, destination, rng.permutation(len(source))[:count]) for _ in range(200))
+    one, two, three = covered(cases)
+    assert 0.25 < one < 0.42
+    assert 0.66 < two < 0.8
+    assert 0.82 < three < 0.96
+
+
+def _real(shared_data, bone, count):
+    """Pairs of real bones: of the femur those that were clicked."""
+    if bone == "femur":
+        _, source, destination = femur_landmarks(shared_data)
+        return source, destination
+    mesh, target = pelvis_meshes(shared_data)
+    rows = pelvis_landmarks(mesh, count)
+    return mesh.vertices[rows], target.vertices[rows]
 
 
 @pytest.mark.parametrize("count", [3, 4])
 @pytest.mark.parametrize("bone", ["femur", "pelvis"])
 def test_the_size_of_a_real_bone_tells_what_three_or_four_pairs_do_not(shared_data, bone, count):
     """Neither too sure nor so unsure that it says nothing."""
-    if bone == "femur":
-        _, source, destination = femur_landmarks(shared_data)
-        mesh = femur_meshes(shared_data)[0]
-    else:
-        mesh, target = pelvis_meshes(shared_data)
-        rows = pelvis_landmarks(mesh, 24)
-        source, destination = mesh.vertices[rows], target.vertices[rows]
+    source, destination = _real(shared_data, bone, 24)
+    mesh = (femur_meshes if bone == "femur" else pelvis_meshes)(shared_data)[0]
     size, rng = extent(mesh.vertices), np.random.default_rng(0)
     ratios = []
     for _ in range(100):

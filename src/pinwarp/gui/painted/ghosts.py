@@ -17,6 +17,9 @@ from pinwarp.gui.scene.projection import Projection
 from pinwarp.gui.style import theme
 from pinwarp.session.warp.ghost import Ghost
 
+# A disc is so many deviations wide: about three of four true places lie within it.
+DOUBT = 2.0
+
 
 class GhostPainter:
     """Paints ghosts onto a sheet.
@@ -76,7 +79,7 @@ class GhostPainter:
         """Paint a disc as wide as the doubt."""
         if ghost.deviation is None:
             return
-        radius = ghost.deviation * self._projection.pixels_per_unit(np.array(ghost.position))
+        radius = DOUBT * ghost.deviation * self._projection.pixels_per_unit(np.array(ghost.position))
         colour = QColor(theme.GHOST_COLOUR)
         colour.setAlphaF(alpha)
         painter.setPen(Qt.PenStyle.NoPen)
