@@ -79,7 +79,9 @@ class GhostPainter:
         """Paint a disc as wide as the doubt."""
         if ghost.deviation is None:
             return
-        radius = DOUBT * ghost.deviation * self._projection.pixels_per_unit(np.array(ghost.position))
+        radius = (
+            DOUBT * ghost.deviation * self._projection.pixels_per_unit(np.array(ghost.position))
+        )
         colour = QColor(theme.GHOST_COLOUR)
         colour.setAlphaF(alpha)
         painter.setPen(Qt.PenStyle.NoPen)
