@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 
 from qtpy.QtCore import QPointF
@@ -19,3 +20,41 @@ def test_calls_into_qt_lose_no_reference_to_none(qapp):
 def test_a_window_opens_without_a_warning_of_qt(user, qtlog):
     user.open_sample()
     assert [record.message for record in qtlog.records] == []
+
+
+def test_the_window_is_there_before_what_only_later_work_needs():
+    code = (
+        "import sys, pinwarp.gui.app\n"
+        "late = {'matplotlib.pyplot', 'matplotlib.figure', 'matplotlib.backend_bases', 'numba',\n"
+        "    'scipy.interpolate', 'scipy.optimize', 'scipy.stats', 'vtkmodules.all', 'asyncio',\n"
+        "    'distributed', 'imageio_ffmpeg', 'opensim', 'rich', 'typer'}\n"
+        "assert not late & set(sys.modules), late & set(sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+def test_a_chart_still_finds_its_figures_and_a_script_finds_matplotlib():
+    code = (
+        "import sys, pinwarp.gui.app\n"
+        "import matplotlib, matplotlib.pyplot as plt\n"
+        "from pyvista.plotting import charts\n"
+        "assert matplotlib.pyplot is plt is sys.modules['matplotlib.pyplot']\n"
+        "assert charts.plt.subplots is plt.subplots\n"
+        "figure, _ = plt.subplots()\n"
+        "from matplotlib.backends.backend_agg import FigureCanvasAgg\n"
+        "assert type(charts.FigureCanvasAgg(figure)) is FigureCanvasAgg"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+def test_what_asks_for_figures_at_once_has_them():
+    code = (
+        "from pinwarp.gui.views.without_charts import without_charts\n"
+        "with without_charts():\n"
+        "    import matplotlib.pyplot as plt\n"
+        "    assert plt.subplots.__module__ == 'matplotlib.pyplot'\n"
+        "    from matplotlib.backends.backend_agg import RendererAgg\n"
+        "import matplotlib.pyplot as later\n"
+        "assert later.subplots is plt.subplots"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)

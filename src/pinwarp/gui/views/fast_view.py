@@ -9,10 +9,14 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from pyvistaqt import QtInteractor, rwi
-from pyvistaqt.rwi import _default_format
 from qtpy.QtGui import QGuiApplication, QOpenGLContext, QSurfaceFormat
 from qtpy.QtWidgets import QWidget
+
+from pinwarp.gui.views.without_charts import without_charts
+
+with without_charts():
+    from pyvistaqt import QtInteractor, rwi
+    from pyvistaqt.rwi import _default_format
 
 
 class _SettledFormat(QSurfaceFormat):
