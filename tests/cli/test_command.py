@@ -12,6 +12,8 @@ import pytest
 import pinwarp
 from pinwarp.io.samples import sample_session
 
+HEAVY = {"qtpy", "PySide6", "pyvistaqt", "pyvista", "vtk", "vtkmodules", "matplotlib"}
+
 
 def run(*arguments, display=True, **environment):
     env = {**os.environ, **environment}
@@ -32,13 +34,34 @@ def test_the_version_is_told():
     assert run("--version").stdout == f"pinwarp {pinwarp.__version__}\n"
 
 
-def test_the_command_line_starts_without_qt():
+def loaded_after(*words):
+    """Run a command and return the packages it has loaded, and the modules of the program."""
     code = (
-        "import sys; from pinwarp.__main__ import main; sys.argv = ['pinwarp', '--version']\n"
-        "try: main()\nexcept SystemExit: pass\n"
-        "assert not [m for m in sys.modules if m.startswith(('qtpy', 'PySide6', 'pyvistaqt'))]"
+        "import sys; from pinwarp.__main__ import main\n"
+        f"sys.argv = ['pinwarp', *{[str(word) for word in words]!r}]\n"
+        "try: main()\nexcept SystemExit as end: assert not end.code, end.code\n"
+        "print(*(x for x in sys.modules if '.' not in x or x.startswith('pinwarp.')))"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+    told = subprocess.run(
+        [sys.executable, "-c", code], check=True, timeout=60, capture_output=True, text=True
+    )
+    return set(told.stdout.splitlines()[-1].split())
+
+
+def test_the_command_line_starts_with_what_a_command_line_needs():
+    loaded = loaded_after("--version")
+    assert "typer" in loaded
+    assert not loaded & {*HEAVY, "numpy", "scipy", "numba", "asyncio", "rich"}
+
+
+def test_help_needs_neither_qt_nor_vtk_nor_compiled_code():
+    assert not loaded_after("--help") & {*HEAVY, "numba"}
+
+
+def test_a_command_loads_no_other():
+    loaded = loaded_after("check", "--help")
+    assert "pinwarp.cli.check" in loaded
+    assert not loaded & {"pinwarp.cli.batch", "pinwarp.cli.model", "pinwarp.session.study"}
 
 
 def test_the_commands_need_neither_qt_nor_vtk_for_the_sample(tmp_path):
@@ -48,13 +71,7 @@ def test_the_commands_need_neither_qt_nor_vtk_for_the_sample(tmp_path):
         ["check", str(session), "--json"],
         ["convert", str(session), str(tmp_path / "all.csv")],
     ):
-        code = (
-            f"import sys; from pinwarp.__main__ import main; sys.argv = ['pinwarp', *{words!r}]\n"
-            "try: main()\nexcept SystemExit as end: assert not end.code, end.code\n"
-            "loaded = {name.partition('.')[0] for name in sys.modules}\n"
-            "assert not loaded & {'qtpy', 'PySide6', 'vtk', 'vtkmodules', 'pyvista'}"
-        )
-        subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+        assert not loaded_after(*words) & HEAVY, words
     assert (tmp_path / "bone.ply").is_file()
 
 

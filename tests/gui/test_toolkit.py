@@ -35,7 +35,7 @@ def test_the_window_is_there_before_what_only_later_work_needs():
 
 def test_a_chart_still_finds_its_figures_and_a_script_finds_matplotlib():
     code = (
-        "import sys, pinwarp.gui.app\n"
+        "import sys, pinwarp.gui.views.fast_view\n"
         "import matplotlib, matplotlib.pyplot as plt\n"
         "from pyvista.plotting import charts\n"
         "assert matplotlib.pyplot is plt is sys.modules['matplotlib.pyplot']\n"

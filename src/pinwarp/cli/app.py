@@ -3,25 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from importlib import import_module
 from typing import Any
 
 import typer
+import typer.main
 from typer.core import TyperCommand, TyperGroup
 
-from pinwarp.cli.batch import batch
-from pinwarp.cli.check import check
-from pinwarp.cli.convert import convert
-from pinwarp.cli.model import model
-from pinwarp.cli.open import OpenWindow, make_open
-from pinwarp.cli.options import Version
-from pinwarp.cli.refine import refine
-from pinwarp.cli.repeat import repeat
-from pinwarp.cli.suggest import suggest
+from pinwarp.cli.open import OpenWindow, Version, make_open
 from pinwarp.cli.telling import BAD_USAGE, INTERRUPTED, tell_error
-from pinwarp.cli.warp import warp
 from pinwarp.core.errors import PinwarpError, words_of
 
 OPEN = "open"
+# Each in the module of its name, which is loaded when it is asked for: the window needs none.
+LATER = ("warp", "check", "repeat", "suggest", "refine", "convert", "batch", "model")
 
 
 class Command(TyperCommand):
@@ -43,9 +38,23 @@ class Commands(TyperGroup):
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Put in the command where the first word is none."""
-        if not args or args[0] not in (*self.commands, "--help", "--version"):
+        if not args or args[0] not in (*self.list_commands(ctx), "--help", "--version"):
             args = [OPEN, *args]
         return super().parse_args(ctx, args)
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Return the names of all commands, loaded or not."""
+        del ctx
+        return [OPEN, *LATER]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Return a command, loaded now where it is not yet."""
+        if cmd_name in LATER and cmd_name not in self.commands:
+            alone = typer.Typer(add_completion=False, rich_markup_mode="rich")
+            function = getattr(import_module(f"pinwarp.cli.{cmd_name}"), cmd_name)
+            alone.command(cls=Command)(function)
+            self.commands[cmd_name] = typer.main.get_command(alone)
+        return super().get_command(ctx, cmd_name)
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command; what was raised for the user is told, not traced."""
@@ -98,6 +107,4 @@ def make_app(open_window: OpenWindow) -> typer.Typer:
         del version  # told before anything else
 
     app.command(OPEN, cls=Command)(make_open(open_window))
-    for command in (warp, check, repeat, suggest, refine, convert, batch, model):
-        app.command(cls=Command)(command)
     return app

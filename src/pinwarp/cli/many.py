@@ -11,7 +11,8 @@ from typing import Annotated
 
 import typer
 
-from pinwarp.cli.telling import INTERRUPTED, progress_bar, tell_error, tell_notes
+from pinwarp.cli.bars import progress_bar
+from pinwarp.cli.telling import INTERRUPTED, tell_error, tell_notes
 from pinwarp.session.study import running
 from pinwarp.session.study.cluster import runner_of
 from pinwarp.session.study.workers import Runner, cores

@@ -8,8 +8,20 @@ from typing import Annotated, Protocol
 
 import typer
 
-from pinwarp.cli.options import Version
 from pinwarp.io.file_names import is_model_file, is_session
+from pinwarp.version import __version__
+
+
+def _tell_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"pinwarp {__version__}")
+        raise typer.Exit
+
+
+Version = Annotated[
+    bool,
+    typer.Option("--version", callback=_tell_version, is_eager=True, help="Show the version."),
+]
 
 
 class OpenWindow(Protocol):

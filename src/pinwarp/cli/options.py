@@ -13,7 +13,6 @@ from pinwarp.core.components import Components
 from pinwarp.core.errors import PinwarpError
 from pinwarp.session import edits
 from pinwarp.session.session import Session
-from pinwarp.version import __version__
 
 SessionFile = Annotated[
     Path, typer.Argument(metavar="SESSION", help="A saved session (.pinwarp.csv).")
@@ -57,18 +56,6 @@ Blend = Annotated[
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace outputs that are there already.")]
-
-
-def _tell_version(wanted: bool) -> None:
-    if wanted:
-        typer.echo(f"pinwarp {__version__}")
-        raise typer.Exit
-
-
-Version = Annotated[
-    bool,
-    typer.Option("--version", callback=_tell_version, is_eager=True, help="Show the version."),
-]
 
 
 def with_options(

@@ -13,8 +13,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from pinwarp.cli.bars import stage_bar
 from pinwarp.cli.options import Force, SessionFile
-from pinwarp.cli.telling import refuse_existing, stage_bar, tell_notes
+from pinwarp.cli.telling import refuse_existing, tell_notes
 from pinwarp.core.errors import words_of
 from pinwarp.core.lengths import Ruler
 from pinwarp.core.words import counted

@@ -9,8 +9,9 @@ from typing import Annotated, Any
 
 import typer
 
+from pinwarp.cli.bars import stage_bar
 from pinwarp.cli.options import Force, SessionFile
-from pinwarp.cli.telling import refuse_existing, stage_bar, tell_error, tell_notes
+from pinwarp.cli.telling import refuse_existing, tell_error, tell_notes
 from pinwarp.core.errors import words_of
 from pinwarp.core.first_guess import FirstGuess, Verdict
 from pinwarp.core.lengths import Ruler

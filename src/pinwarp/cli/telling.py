@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from pinwarp.core.errors import PinwarpError, readable
 
@@ -25,32 +22,6 @@ def tell_notes(notes: Iterable[str], about: str = "") -> None:
     """Say what the user should know beside the result, a line each."""
     for note in notes:
         typer.echo(readable(f"{about}: {note}" if about else note), err=True)
-
-
-def progress_bar() -> Progress:
-    """Return a bar for many files; it shows itself only on a terminal."""
-    console = Console(stderr=True)
-    return Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeRemainingColumn(),
-        console=console,
-        transient=True,
-        disable=not console.is_terminal,
-    )
-
-
-@contextlib.contextmanager
-def stage_bar() -> Iterator[Callable[[float, str], None]]:
-    """Show one piece of work by its share and stage, and give what is called with them."""
-    with progress_bar() as progress:
-        bar = progress.add_task("", total=1.0)
-
-        def told(share: float, words: str) -> None:
-            progress.update(bar, completed=share, description=words.capitalize())
-
-        yield told
 
 
 def refuse_existing(outputs: Sequence[Path], force: bool) -> None:

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from pinwarp.cli.bars import progress_bar
 from pinwarp.cli.options import (
     Applied,
     BasisOption,
@@ -16,7 +17,7 @@ from pinwarp.cli.options import (
     SessionFile,
     with_options,
 )
-from pinwarp.cli.telling import BAD_USAGE, progress_bar, refuse_existing, tell_error, tell_notes
+from pinwarp.cli.telling import BAD_USAGE, refuse_existing, tell_error, tell_notes
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.core.words import counted
