@@ -22,6 +22,7 @@ from pinwarp.gui.files.lost_work_dialog import LostAnswer
 from pinwarp.gui.importing.dialog import ImportDialog
 from pinwarp.gui.importing.specimen_dialog import SpecimenDialog
 from pinwarp.gui.tasks.dialogs import Existing
+from pinwarp.gui.views import canvas
 from pinwarp.gui.window.main_window import MainWindow
 from pinwarp.io.samples import assets_folder, sample_session
 from pinwarp.session.keeping.recovery import LostWork
@@ -36,6 +37,14 @@ def qapp_cls():
 @pytest.fixture(scope="session")
 def qapp():
     return make_application()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def plain_edges():
+    """Leave edges as they are: smoothing is half of every frame, and one test sees it done."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(canvas, "SMOOTH_EDGES", False)
+        yield
 
 
 class ScriptedDialogs:

@@ -41,6 +41,8 @@ Kind = TypeVar("Kind", bound=Drawable)
 
 # A frame slower than this is replaced by a stand-in's while something moves.
 SLOW_FRAME = 0.030
+# Whether edges are smoothed where things rest: it costs half a frame in software.
+SMOOTH_EDGES = True
 # How near and how far a hand may bring the camera to what it looks at, in diagonals of the bone.
 NEAREST, FURTHEST = 1e-3, 50.0
 # A click this many pixels beside the bone is meant for the bone.
@@ -184,8 +186,7 @@ class Canvas(SightedView):
         return self._orbiting or self.drawn(Motion) is not None
 
     def _choose_detail(self) -> None:
-        # Smoothed edges cost half a frame in software: they can wait until things rest.
-        self.renderer.SetUseFXAA(not self._is_moving)
+        self.renderer.SetUseFXAA(SMOOTH_EDGES and not self._is_moving)
         self._stage.set_coarse(self.is_coarse)
         self.update()
 
