@@ -9,7 +9,7 @@ from tests.core.femur import femur_landmarks
 from tests.core.mistaken import made_up, smooth, stationary
 from tests.core.strategies import landmark_pairs, rotations
 
-from pinwarp.core.chance import chance_of
+from pinwarp.core.chance import chances_of
 from pinwarp.core.evidence import evidence
 from pinwarp.core.exchanges import best_exchange
 from pinwarp.core.findings import Finding, FindingKind, Severity
@@ -206,7 +206,9 @@ def test_leaving_pairs_out_is_as_if_they_had_never_been_there(roughness):
         assert np.allclose(seen.block(level, rest.tolist()), G, rtol=1e-6, atol=1e-12)
         assert np.allclose(seen.column(level, 5)[rest], G[:, list(rest).index(5)], atol=1e-9)
         near = seen.near_entries(level)[rest[0]]
-        kept = [k for k, row in enumerate(field.near[rest[0]]) if row in rest]
+        nearest = field.near[rest[0], : field.neighbours + 1]
+        kept = [k for k, row in enumerate(nearest) if row in rest]
+        assert len(near) == len(nearest)
         places = [list(rest).index(field.near[rest[0]][k]) for k in kept]
         assert np.allclose(near[kept], G[0, places], atol=1e-9)
 
@@ -214,11 +216,25 @@ def test_leaving_pairs_out_is_as_if_they_had_never_been_there(roughness):
 def test_the_chance_depends_neither_on_the_unit_nor_on_the_pose():
     source, destination = bone()
     y = destination - destination.mean(axis=0)
-    first = chance_of(evidence(PairField.of(factorise(source)), y), 6)
+    (first,) = chances_of([(evidence(PairField.of(factorise(source)), y), 6)])
     turned = 1e-3 * source @ rotations(4) + 7
-    second = chance_of(evidence(PairField.of(factorise(turned)), 50 * y @ rotations(9)), 6)
+    moved = evidence(PairField.of(factorise(turned)), 50 * y @ rotations(9))
+    (second,) = chances_of([(moved, 6)])
     assert second.value == pytest.approx(first.value, rel=1e-6)
     assert (second.shift, second.usual) == pytest.approx((50 * first.shift, 50 * first.usual))
+
+
+def test_pairs_that_are_judged_at_once_are_judged_as_one_by_one():
+    source, destination = bone(30)
+    y = destination - destination.mean(axis=0)
+    field = PairField.of(factorise(source))
+    seen = [evidence(field, y, out) for out in ((), (4,), (2, 11))]
+    asked = [(seen[0], 6), (seen[1], 6), (seen[2], 4), (seen[2], 19)]
+    alone = [chances_of([pair])[0] for pair in asked]
+    for chance, other in zip(chances_of(asked), alone, strict=True):
+        assert chance.value == pytest.approx(other.value, rel=1e-9)
+        assert (chance.shift, chance.usual) == pytest.approx((other.shift, other.usual))
+    assert len({chance.value for chance in alone}) == 4
 
 
 # Anything

@@ -8,25 +8,29 @@ the same; what still scatters has a tail whose weight is learnt from the pairs.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import fdtrc, gammaln
 
 from pinwarp.core.evidence import Evidence
-from pinwarp.core.pair_field import NEIGHBOURS
+from pinwarp.core.pair_field import PairField
 
 Matrix = NDArray[np.float64]
 
 # The belief that isolation means no more than the field says, as a sum of squares, and how much
 # more it can mean: the variance of a smooth field grows with the cube of the spacing.
 BELIEF, STEEPEST = 4.0, 2.5
-# The whole set counts like so many neighbours; a neighbourhood is at most such a part of the set.
-WHOLE_SET, PART = 4.0, 8
+# The whole set counts like so many neighbours.
+WHOLE_SET = 4.0
 # Degrees of freedom that a tail may have, and what a heavy one costs.
 TAILS = np.array([2.0, 2.5, 3.5, 5.0, 7.0, 10.0, 16.0, 30.0, 100.0])
 HEAVY = 12.0
+# What the density of F(3, m) has of m alone.
+TAIL_DENSITY = gammaln((TAILS + 3) / 2) - gammaln(TAILS / 2) - 1.5 * np.log(TAILS)
 # So many pairs' worth of belief that the scale is right; steps to find it.
 SCALE, STEPS = 15.0, 12
 # The price of choosing the noise level without the pair, in hindsight.
@@ -55,17 +59,17 @@ class Chance:
     usual: float
 
 
-def chance_of(seen: Evidence, row: int) -> Chance:
-    """Judge a pair, at the noise level of all pairs or at that of the others.
+def chances_of(asked: Sequence[tuple[Evidence, int]]) -> list[Chance]:
+    """Judge pairs, each at the noise level of all pairs or at that of the others.
 
-    The latter is the better model where the pair is far off, but is chosen in hindsight.
+    The latter is the better model where the pair is far off, but is chosen in hindsight. All are
+    judged at once, since for one pair there is more to call than to compute.
 
     Parameters
     ----------
-    seen
-        The pairs; three modes or more are left.
-    row
-        A pair that is kept.
+    asked
+        One and more times the pairs, of one field, with a pair that is kept; three modes or more
+        are left.
 
     Examples
     --------
@@ -76,53 +80,60 @@ def chance_of(seen: Evidence, row: int) -> Chance:
     >>> strange = 0.1 * np.sin(source)
     >>> strange[4] += 1
     >>> seen = evidence(PairField.of(factorise(source)), strange)
-    >>> chance_of(seen, 4).value < 0.001 < chance_of(seen, 5).value
+    >>> off, other = chances_of([(seen, 4), (seen, 5)])
+    >>> off.value < 0.001 < other.value
     True
     """
-    chance = chance_at(seen, row, seen.level)
-    level = seen.level_without(row)
-    if level != seen.level:
-        other = chance_at(seen, row, level)
-        if HINDSIGHT * other.value < chance.value:
-            return Chance(HINDSIGHT * other.value, other.shift, other.usual)
-    return chance
+    levels = [(seen.level, seen.level_without(row)) for seen, row in asked]
+    both = [(*pair, at) for pair, two in zip(asked, levels, strict=True) for at in sorted({*two})]
+    judged = dict(zip(((id(x), row, at) for x, row, at in both), _judged(both), strict=True))
+    found = []
+    for (seen, row), (level, without) in zip(asked, levels, strict=True):
+        chance, other = (judged[id(seen), row, at] for at in (level, without))
+        if level != without and HINDSIGHT * other.value < chance.value:
+            chance = Chance(HINDSIGHT * other.value, other.shift, other.usual)
+        found.append(chance)
+    return found
 
 
-def chance_at(seen: Evidence, row: int, level: int) -> Chance:
-    """Judge a pair at one noise level."""
-    others = _Others.of(seen, row, level)
-    slope = _slope(others)
-    grown = others.isolation**slope
+def _judged(asked: Sequence[tuple[Evidence, int, int]]) -> list[Chance]:
+    """Judge pairs, each at one noise level."""
+    others = _Others.of(asked)
+    grown = others.isolation ** _slope(others)[:, None]
     figures = np.where(others.kept, others.figures / grown, 0.0)
-    before = float(np.mean(others.figures[others.kept]))
-    shrunk = float(np.mean(figures[others.kept])) / max(before, _TINY)
-    freedom = seen.freedom - 1
-    middle = shrunk * float(seen.remaining[row, level]) / (3 * freedom)
-    usual, own = _surroundings(others, figures, grown, middle)
-    own *= float(grown[row])
-    relative = figures[others.kept] / usual[others.kept]
-    weight, scale = _tail(np.maximum(relative, NOTHING * relative.max()), freedom)
-    gain = float(seen.gains[row, level])
-    spread = 1 / (1 / TAILS + 1 / (3.0 * freedom))
-    value = float(weight @ fdtrc(3, spread, gain / 3 / own / scale))
-    precision = float(seen.precision[row, level])
-    return Chance(
-        value=value,
-        shift=float(np.sqrt(gain / precision)),
-        usual=float(np.sqrt(3 * own * float(weight @ scale) / precision)),
+    # The mean square, as far as isolation does not explain it.
+    shrunk = figures.sum(axis=1) / np.maximum(others.figures.sum(axis=1), _TINY * others.count)
+    freedom = np.array([seen.freedom - 1 for seen, _, _ in asked])
+    remaining = np.array([seen.remaining[row, level] for seen, row, level in asked])
+    usual, own = _surroundings(others, figures, grown, shrunk * remaining / (3 * freedom))
+    own *= others.of_the_one(grown)
+    relative = figures / usual
+    least = NOTHING * relative.max(axis=1, keepdims=True)
+    weight, scale = _tail(
+        np.where(others.kept, np.maximum(relative, least), 0.0), others.count, freedom
     )
+    gain = np.array([seen.gains[row, level] for seen, row, level in asked])
+    precision = np.array([seen.precision[row, level] for seen, row, level in asked])
+    spread = 1 / (1 / TAILS + 1 / (3.0 * freedom[:, None]))
+    tails = fdtrc(3, spread, (gain / 3 / own)[:, None] / scale)
+    values = np.sum(weight * tails, axis=1)
+    shifts = np.sqrt(gain / precision)
+    usuals = np.sqrt(3 * own * np.sum(weight * scale, axis=1) / precision)
+    told = zip(values.tolist(), shifts.tolist(), usuals.tolist(), strict=True)
+    return [Chance(*figures) for figures in told]
 
 
 @dataclass(frozen=True, eq=False)
 class _Others:
-    """The other pairs, one left out: everything by the rows of the whole set.
+    """The other pairs, one left out, once for each that is asked about.
 
-    ``isolation`` is ``1 / g`` in units of the median; of the one itself, with all the others.
+    Everything is (asked, n, ...), by the rows of the whole set. ``isolation`` is ``1 / g`` in
+    units of the median; of the one itself, with all the others.
     """
 
-    seen: Evidence
-    row: int
-    level: int
+    field: PairField
+    near_entries: Matrix
+    rows: NDArray[np.intp]
     column: Matrix
     pulls: Matrix
     precision: Matrix
@@ -131,80 +142,113 @@ class _Others:
     isolation: Matrix
 
     @classmethod
-    def of(cls, seen: Evidence, row: int, level: int) -> _Others:
-        column = seen.column(level, row)
-        share = column / column[row]
-        pulls = seen.pulls[:, :, level] - share[:, None] * seen.pulls[row, :, level]
-        precision = seen.precision[:, level] - share * column
-        kept = seen.kept & (precision > NOTHING * float(np.median(seen.precision[:, level])))
-        kept[row] = False
+    def of(cls, asked: Sequence[tuple[Evidence, int, int]]) -> _Others:
+        rows = np.array([row for _, row, _ in asked])
+        each = np.arange(len(asked))
+        column = np.stack([seen.column(level, row) for seen, row, level in asked])
+        pulls = np.stack([seen.pulls[:, :, level] for seen, _, level in asked])
+        before = np.stack([seen.precision[:, level] for seen, _, level in asked])
+        share = column / column[each, rows, None]
+        pulls = pulls - share[:, :, None] * pulls[each, rows, None]
+        precision = before - share * column
+        kept = np.stack([seen.kept for seen, _, _ in asked])
+        kept &= precision > NOTHING * _median(before, np.full(len(asked), before.shape[1]))
+        kept[each, rows] = False
         safe = np.where(kept, precision, 1.0)
-        squares = np.einsum("nc,nc->n", pulls, pulls)
-        isolation = 1 / safe / float(np.median(1 / safe[kept]))
-        isolation[~kept] = 1 / float(seen.precision[row, level]) / float(np.median(1 / safe[kept]))
+        own = 1 / before[each, rows, None]
+        spacing = np.where(kept, 1 / safe, np.inf)
+        squares = np.einsum("anc,anc->an", pulls, pulls)
         return cls(
-            seen=seen,
-            row=row,
-            level=level,
+            field=asked[0][0].field,
+            near_entries=np.stack([seen.near_entries(level) for seen, _, level in asked]),
+            rows=rows,
             column=column,
             pulls=pulls,
             precision=precision,
             kept=kept,
             figures=np.where(kept, squares / safe, 0.0) / 3,
-            isolation=isolation,
+            isolation=np.where(kept, 1 / safe, own) / _median(spacing, kept.sum(axis=1)),
         )
 
+    @cached_property
+    def count(self) -> NDArray[np.intp]:
+        """(asked,): how many are kept."""
+        return np.asarray(self.kept.sum(axis=1))
 
-def _slope(others: _Others) -> float:
+    def of_the_one(self, values: Matrix) -> Matrix:
+        """Return what (asked, n) values are of the one itself, (asked,)."""
+        return np.asarray(values[np.arange(len(self.rows)), self.rows])
+
+
+def _median(values: Matrix, count: NDArray[np.intp]) -> Matrix:
+    """Return the median of each row, (asked, 1): so many of its values are not infinite."""
+    ascending = np.sort(values, axis=1)
+    middle = np.stack([(count - 1) // 2, count // 2], axis=1)
+    return np.asarray(np.take_along_axis(ascending, middle, axis=1).mean(axis=1, keepdims=True))
+
+
+def _slope(others: _Others) -> Matrix:
     """Return by which power of their isolation figures grow beyond what the field says."""
-    figures = np.maximum(others.figures, max(NOTHING * float(others.figures.max()), _TINY))
-    x, y = np.log(others.isolation[others.kept]), np.log(figures[others.kept])
-    x = x - x.mean()
-    return float(np.clip(x @ (y - y.mean()) / (x @ x + BELIEF), 0.0, STEEPEST))
+    kept, count = others.kept, others.count[:, None]
+    least = np.maximum(NOTHING * others.figures.max(axis=1, keepdims=True), _TINY)
+    x = np.where(kept, np.log(others.isolation), 0.0)
+    y = np.where(kept, np.log(np.maximum(others.figures, least)), 0.0)
+    x = np.where(kept, x - x.sum(axis=1, keepdims=True) / count, 0.0)
+    y = y - y.sum(axis=1, keepdims=True) / count
+    slope = np.sum(x * y, axis=1) / (np.sum(x * x, axis=1) + BELIEF)
+    return np.asarray(np.clip(slope, 0.0, STEEPEST))
 
 
 def _surroundings(
-    others: _Others, figures: Matrix, grown: Matrix, middle: float
-) -> tuple[Matrix, float]:
+    others: _Others, figures: Matrix, grown: Matrix, middle: Matrix
+) -> tuple[Matrix, Matrix]:
     """Return what is usual around each pair, by its neighbours without it, and around the one."""
-    seen, row, level = others.seen, others.row, others.level
-    count = int(np.clip(len(figures) // PART, 1, NEIGHBOURS))
-    near = seen.field.near[:, : count + 1]
-    entries = seen.near_entries(level)[:, : count + 1]
-    entries = entries - others.column[:, None] * others.column[near] / others.column[row]
-    share = entries / np.where(others.kept, others.precision, np.inf)[:, None]
-    pulls = others.pulls[near] - share[:, :, None] * others.pulls[:, None, :]
-    precision = others.precision[near] - share * entries
-    told = others.kept[near] & (precision > LITTLE * others.precision[near])
-    squares = np.einsum("nkc,nkc->nk", pulls, pulls)
-    theirs = np.where(told, squares / np.where(told, precision, 1.0), 0.0) / 3 / grown[near]
-    # Of one neighbour more than needed the first that are there.
-    told &= np.cumsum(told, axis=1) <= count
-    number = told.sum(axis=1)
-    usual = (WHOLE_SET * middle + np.sum(theirs * told, axis=1)) / (WHOLE_SET + number)
-    around = [j for j in seen.field.near[row] if others.kept[j]][:count]
-    own = (WHOLE_SET * middle + float(np.sum(figures[around]))) / (WHOLE_SET + len(around))
-    return np.maximum(usual, max(1e-12 * middle, _TINY)), max(own, _TINY)
-
-
-def _tail(figures: Matrix, freedom: int) -> tuple[Matrix, Matrix]:
-    """Return how likely each of the tails is, and its scale: figures are scale times F(3, m)."""
-    count = len(figures)
-    x = figures[:, None]
-    scale = np.full(len(TAILS), max(float(np.mean(figures)), _TINY))
-    for _ in range(STEPS):
-        weight = (TAILS + 3) / (TAILS + 3 * x / scale)
-        scale = (np.sum(weight * x, axis=0) + SCALE) / (count + SCALE)
-    # The density of F(3, m) without what is the same for all m.
-    density = (
-        gammaln((TAILS + 3) / 2)
-        - gammaln(TAILS / 2)
-        - 1.5 * np.log(TAILS)
-        - (TAILS + 3) / 2 * np.log1p(3 * x / scale / TAILS)
+    count = others.field.neighbours
+    near = others.field.near[:, : count + 1]
+    column = others.column
+    relative = column / others.of_the_one(column)[:, None]
+    entries = others.near_entries - column[:, :, None] * relative.take(near, axis=1)
+    share = entries / np.where(others.kept, others.precision, np.inf)[:, :, None]
+    pulls = others.pulls.take(near, axis=1) - share[..., None] * others.pulls[:, :, None]
+    before = others.precision.take(near, axis=1)
+    precision = before - share * entries
+    told = others.kept.take(near, axis=1) & (precision > LITTLE * before)
+    squares = np.einsum("ankc,ankc->ank", pulls, pulls)
+    theirs = (
+        np.where(told, squares / np.where(told, precision, 1.0), 0.0) / 3 / grown.take(near, axis=1)
     )
-    likely = np.sum(density, axis=0) - 1.5 * count * np.log(scale)
+    # Of one neighbour more than needed the first that are there.
+    told &= np.cumsum(told, axis=2) <= count
+    start = (WHOLE_SET * middle)[:, None]
+    usual = (start + np.sum(theirs * told, axis=2)) / (WHOLE_SET + told.sum(axis=2))
+    around = others.field.near[others.rows]
+    there = np.take_along_axis(others.kept, around, axis=1)
+    there &= np.cumsum(there, axis=1) <= count
+    own = start[:, 0] + np.sum(np.take_along_axis(figures, around, axis=1) * there, axis=1)
+    own = own / (WHOLE_SET + there.sum(axis=1))
+    return np.maximum(usual, np.maximum(1e-12 * middle, _TINY)[:, None]), np.maximum(own, _TINY)
+
+
+def _tail(
+    figures: Matrix, count: NDArray[np.intp], freedom: NDArray[np.intp]
+) -> tuple[Matrix, Matrix]:
+    """Return how likely each of the tails is, and its scale: figures are scale times F(3, m).
+
+    Both are (asked, tails). Figures of 0 are none: so many count.
+    """
+    x, count, third = figures[:, None, :], count[:, None], TAILS / 3
+    scale = np.maximum(x.sum(axis=2) / count, _TINY) + np.zeros(len(TAILS))
+    share = np.empty((len(x), len(TAILS), x.shape[2]))
+    for _ in range(STEPS):
+        # Each figure x counts (m + 3) / (m + 3 x / scale) times.
+        np.add(x, (third * scale)[:, :, None], out=share)
+        np.divide(x, share, out=share)
+        scale = ((third + 1) * scale * share.sum(axis=2) + SCALE) / (count + SCALE)
+    np.divide(x, (third * scale)[:, :, None], out=share)
+    likely = count * (TAIL_DENSITY - 1.5 * np.log(scale))
+    likely -= (TAILS + 3) / 2 * np.log1p(share, out=share).sum(axis=2)
     # So many dependent figures say no more than their freedom.
-    likely *= freedom / count
+    likely *= freedom[:, None] / count
     likely -= HEAVY / TAILS + 1.5 * SCALE * (1 / scale + np.log(scale) - 1)
-    shares = np.exp(likely - likely.max())
-    return shares / shares.sum(), scale
+    shares = np.exp(likely - likely.max(axis=1, keepdims=True))
+    return shares / shares.sum(axis=1, keepdims=True), scale

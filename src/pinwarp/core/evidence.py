@@ -46,6 +46,8 @@ class Evidence:
         How many modes are left.
     kept : (n,) bool
         The pairs that can be judged.
+    inverse : (k, d, d)
+        That of ``G`` between those that are left out.
     """
 
     field: PairField
@@ -57,6 +59,7 @@ class Evidence:
     log_det: Matrix
     freedom: int
     kept: NDArray[np.bool_]
+    inverse: Matrix
 
     @cached_property
     def _safe(self) -> Matrix:
@@ -102,32 +105,31 @@ class Evidence:
         """Return a column of ``G`` at a noise level, (n,)."""
         column = self.field.entries(level, [row])[:, 0]
         if self.left_out:
-            taken, inverse = self._taken(level)
-            column = column - taken @ (inverse @ taken[row])
+            taken, onto = self._taken(level)
+            column = column - onto @ taken[row]
         return column
 
-    def block(self, level: int, rows: list[int]) -> Matrix:
-        """Return ``G`` between some pairs at a noise level."""
+    def block(self, level: int | slice, rows: list[int]) -> Matrix:
+        """Return ``G`` between some pairs at a noise level, or at some, (..., rows, rows)."""
         block = self.field.entries(level, rows, rows)
         if self.left_out:
-            taken, inverse = self._taken(level, rows)
-            block = block - taken @ inverse @ taken.T
+            taken = self.field.entries(level, self.left_out, rows)
+            block = block - taken @ self.inverse[level] @ taken.swapaxes(-1, -2)
         return block
 
     def near_entries(self, level: int) -> Matrix:
-        """Return ``G`` between each pair and its neighbours at a noise level."""
-        entries = self.field.near_entries(level)
+        """Return ``G`` between each pair and its nearest neighbours at a noise level."""
+        entries = self.field.near_entries[level]
         if self.left_out:
-            taken, inverse = self._taken(level)
-            entries = entries - np.einsum("nd,nkd->nk", taken @ inverse, taken[self.field.near])
-        return entries
+            taken, onto = self._taken(level)
+            near = self.field.near[:, : entries.shape[1]]
+            entries = entries - np.einsum("nd,nkd->nk", onto, taken[near])
+        return np.asarray(entries)
 
-    def _taken(self, level: int, of: list[int] | None = None) -> tuple[Matrix, Matrix]:
-        """Return the columns of those left out as they were, and their block's inverse."""
-        out = self.left_out
-        block = self.field.entries(level, out, out)
-        inverse = np.asarray(np.linalg.pinv(block, hermitian=True), dtype=np.float64)
-        return self.field.entries(level, out, of), inverse
+    def _taken(self, level: int) -> tuple[Matrix, Matrix]:
+        """Return the columns of those left out as they were, and the same by their inverse."""
+        taken = self.field.entries(level, self.left_out)
+        return taken, taken @ self.inverse[level]
 
 
 def evidence(field: PairField, destination: Matrix, left_out: Sequence[int] = ()) -> Evidence:
@@ -159,11 +161,12 @@ def evidence(field: PairField, destination: Matrix, left_out: Sequence[int] = ()
     pulls = (modes @ spread.reshape(len(parts), 3 * levels)).reshape(count, 3, levels)
     precision, log_det = field.precision, field.log_det
     misfit = np.sum(parts * parts, axis=1) @ certainty
+    inverse = np.zeros((levels, 0, 0))
     if rows:
         # (k, n, d), (k, d, d), (k, d, 3)
-        taken = modes @ (certainty.T[:, :, None] * modes[rows].T)
+        taken = field.entries(slice(None), rows)
         block = taken[:, rows]
-        inverse = np.linalg.pinv(block, hermitian=True)
+        inverse = np.asarray(np.linalg.pinv(block, hermitian=True), dtype=np.float64)
         onto = taken @ inverse
         theirs = pulls[rows].transpose(2, 0, 1)
         misfit = misfit - np.sum(theirs * (inverse @ theirs), axis=(1, 2))
@@ -183,4 +186,5 @@ def evidence(field: PairField, destination: Matrix, left_out: Sequence[int] = ()
         log_det=log_det,
         freedom=modes.shape[1] - len(rows),
         kept=kept,
+        inverse=inverse,
     )

@@ -29,7 +29,7 @@ def best_exchange(seen: Evidence, rows: NDArray[np.intp]) -> tuple[float, int, i
     Returns
     -------
     likely, i, j
-        The log likelihood after the exchange, and who is exchanged.
+        The log likelihood after the exchange, and who is exchanged, in the order of the rows.
 
     Examples
     --------
@@ -42,22 +42,23 @@ def best_exchange(seen: Evidence, rows: NDArray[np.intp]) -> tuple[float, int, i
     >>> sorted(best_exchange(seen, np.arange(12))[1:])
     [3, 7]
     """
-    y = seen.destination[rows]
-    apart = cdist(y, y) ** 2
-    return max(_best_at(seen, rows, apart, k) for k in range(0, len(seen.misfit), STRIDE))
-
-
-def _best_at(
-    seen: Evidence, rows: NDArray[np.intp], apart: NDArray[np.float64], level: int
-) -> tuple[float, int, int]:
-    y, pulls = seen.destination[rows], seen.pulls[rows, :, level]
-    G = seen.block(level, rows.tolist())
+    levels = slice(0, None, STRIDE)
+    y, pulls = seen.destination[rows], seen.pulls[rows, :, levels].transpose(2, 0, 1)
+    misfit = seen.misfit[levels]
+    G = seen.block(levels, rows.tolist())
     across = pulls @ y.T
-    own, diagonal = np.diag(across), np.diag(G)
-    after = seen.misfit[level] + 2 * (across + across.T - own[:, None] - own)
-    after += (diagonal[:, None] + diagonal - 2 * G) * apart
-    np.fill_diagonal(after, np.inf)
-    i, j = (int(row) for row in np.unravel_index(after.argmin(), after.shape))
-    misfit = max(float(after[i, j]), LEAST * float(seen.misfit[level]))
-    likely = float(seen.likelihood(misfit, float(seen.log_det[level])))
-    return likely, int(rows[i]), int(rows[j])
+    across -= np.diagonal(across, axis1=1, axis2=2)[:, :, None]
+    G *= -2
+    diagonal = np.diagonal(G, axis1=1, axis2=2) / -2
+    G += diagonal[:, :, None]
+    G += diagonal[:, None]
+    G *= cdist(y, y) ** 2
+    after = misfit[:, None, None] + 2 * (across + across.swapaxes(1, 2)) + G
+    # Nobody is exchanged with himself.
+    after[:, range(len(rows)), range(len(rows))] = np.inf
+    flat = after.reshape(len(after), -1)
+    left = np.maximum(flat.min(axis=1), LEAST * misfit)
+    likely = seen.likelihood(left, seen.log_det[levels])
+    best = int(likely.argmax())
+    i, j = sorted(divmod(int(flat[best].argmin()), len(rows)))
+    return float(likely[best]), int(rows[i]), int(rows[j])

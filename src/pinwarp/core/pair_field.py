@@ -8,8 +8,9 @@ Spline Models for Observational Data, 1990, section 2.4). Bones bend more smooth
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,8 +27,9 @@ LEVELS = 14
 NO_NOISE, LEAST_NOISE, MOST_NOISE = 1e-4, 0.02, 20.0
 # A mode below this share of the median one is no softer than that.
 SOFTEST = 1e-9
-# So many neighbours are looked at, and two more in place of some that are left out.
-NEIGHBOURS = 6
+# So many neighbours are looked at, at most such a part of the set, and two more in place of some
+# that are left out.
+NEIGHBOURS, PART = 6, 8
 SPARE = 2
 
 
@@ -64,7 +66,6 @@ class PairField:
     precision: Matrix
     log_det: Matrix
     near: NDArray[np.intp]
-    _near_entries: dict[int, Matrix] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(cls, factor: SourceFactor, roughness: Roughness = Roughness.SPLINE) -> PairField:
@@ -92,6 +93,8 @@ class PairField:
         noise = np.concatenate([[NO_NOISE * middle], steps])
         certainty = 1.0 / (values[:, None] + noise)
         count = min(NEIGHBOURS + SPARE, len(factor.source) - 1)
+        # Rows are taken again and again.
+        modes = np.ascontiguousarray(modes)
         return cls(
             modes=modes,
             noise=noise,
@@ -101,21 +104,35 @@ class PairField:
             near=_nearest(factor.source, count),
         )
 
-    def entries(self, level: int, rows: Sequence[int], of: Sequence[int] | None = None) -> Matrix:
-        """Return the columns of ``G`` of some landmarks at a noise level, of all rows or some."""
-        modes = self.modes if of is None else self.modes[list(of)]
-        return np.asarray(modes @ (self.certainty[:, level, None] * self.modes[list(rows)].T))
+    @property
+    def neighbours(self) -> int:
+        """How many make a neighbourhood."""
+        return int(np.clip(len(self.modes) // PART, 1, NEIGHBOURS))
 
-    def near_entries(self, level: int) -> Matrix:
-        """Return ``G`` between each landmark and its neighbours at a noise level, like `near`."""
-        if level not in self._near_entries:
-            weighed = self.modes * self.certainty[:, level]
-            columns = [
-                np.einsum("nm,nm->n", weighed, self.modes[self.near[:, k]])
-                for k in range(self.near.shape[1])
-            ]
-            self._near_entries[level] = np.column_stack(columns)
-        return self._near_entries[level]
+    def entries(
+        self, level: int | slice, rows: Sequence[int], of: Sequence[int] | None = None
+    ) -> Matrix:
+        """Return the columns of ``G`` of some landmarks, of all rows or some.
+
+        At a noise level, or at some of them: (..., of, rows).
+        """
+        modes = self.modes if of is None else self.modes[list(of)]
+        certainty = np.ascontiguousarray(self.certainty.T[level])
+        weighed = self.modes[list(rows)] * certainty[..., None, :]
+        # One product for all levels.
+        found = modes @ weighed.reshape(-1, modes.shape[1]).T
+        shape = (len(modes), *certainty.shape[:-1], len(rows))
+        return np.asarray(np.moveaxis(found.reshape(shape), 0, -2))
+
+    @cached_property
+    def near_entries(self) -> Matrix:
+        """``G`` between each landmark and its neighbours at every noise level.
+
+        (levels, n, :attr:`neighbours` + 1): of one more than needed another may be left out.
+        """
+        nearest = self.near.T[: self.neighbours + 1]
+        columns = [(self.modes * self.modes[rows]) @ self.certainty for rows in nearest]
+        return np.ascontiguousarray(np.stack(columns).transpose(2, 1, 0))
 
 
 def _modes(factor: SourceFactor, roughness: Roughness) -> tuple[Matrix, Matrix]:

@@ -155,22 +155,22 @@ class _Search:
     def _leave_out(self, row: int) -> None:
         self._left_out.append(row)
         self._free[row] = False
+        self._pairs.leave_out(row)
 
     # One pair, or one of two
 
     def _one_or_two(self, seen: Evidence, limit: float) -> list[Finding]:
         """Find the pair whose leaving out explains most, or the two that do so equally well."""
         count = self._free_count(seen)
-        judged = [
-            (row, self._pairs.agreed(seen, row, limit / count))
-            for row in self._strangest(seen, ALIKE)
-        ]
+        rows = self._strangest(seen, ALIKE)
+        chances = self._pairs.agreed([(seen, row) for row in rows], limit / count)
+        judged = zip(rows, chances, strict=True)
         passed = sorted((x for x in judged if x[1].value * count < limit), key=lambda x: x[1].value)
         if not passed:
             return []
-        rows = tuple(row for row, _ in passed[:2])
-        self._leave_out(rows[0])
-        return [self._finding(rows, passed[0][1], passed[0][1].value * count)]
+        named = tuple(row for row, _ in passed[:2])
+        self._leave_out(named[0])
+        return [self._finding(named, passed[0][1], passed[0][1].value * count)]
 
     def _strangest(self, seen: Evidence, within: float = np.inf) -> list[int]:
         """Return the rows whose leaving out explains most, the best first."""
@@ -188,7 +188,8 @@ class _Search:
             limit = _strict(seen) / choices
             # Of more than two only those that the strangest leads to.
             starts = self._strangest(seen)[: LOOKED_AT if number == 2 else 1]
-            found = [judged for first in starts if (judged := self._each(first, number, limit))]
+            sets = [rows for first in starts if (rows := self._hiding(first, number))]
+            found = self._all_strange(sets, limit)
             if found:
                 best = min(found, key=_worst)
                 for row, _ in best:
@@ -198,22 +199,26 @@ class _Search:
                 ]
         return []
 
-    def _each(self, first: int, number: int, limit: float) -> list[tuple[int, Chance]]:
-        """Judge each of so many pairs without the others; nothing where one is ordinary."""
+    def _hiding(self, first: int, number: int) -> list[int]:
+        """Return so many pairs, each the strangest without those before; none where too few."""
         rows = [first]
         while len(rows) < number:
             following = self._strangest(self._without(*rows))
             if not following:
                 return []
             rows.append(following[0])
-        judged = []
-        for row in reversed(rows):
-            others = self._without(*(other for other in rows if other != row))
-            chance = self._pairs.agreed(others, row, limit)
-            if chance.value >= limit:
-                return []
-            judged.append((row, chance))
-        return judged
+        return rows[::-1]
+
+    def _all_strange(self, sets: list[list[int]], limit: float) -> list[list[tuple[int, Chance]]]:
+        """Judge each pair of some sets without the others of its set: keep sets of strange ones."""
+        asked = [
+            (self._without(*(other for other in rows if other != row)), row)
+            for rows in sets
+            for row in rows
+        ]
+        chances = iter(self._pairs.agreed(asked, limit))
+        judged = [[(row, next(chances)) for row in rows] for rows in sets]
+        return [one for one in judged if _worst(one) < limit]
 
     def _finding(self, rows: tuple[int, ...], chance: Chance, of_a_set: float) -> Finding:
         shift, usual = chance.shift * self._unit, chance.usual * self._unit
@@ -242,11 +247,9 @@ class _Search:
 
     def _doubtful(self, i: int, j: int) -> bool:
         """Whether one of two is ordinary with the other left out."""
-        for out, row in ((i, j), (j, i)):
-            others = self._without(out)
-            if others.kept[row] and self._pairs.chance(others, row).value >= DOUBTFUL:
-                return True
-        return False
+        asked = [(self._without(out), row) for out, row in ((i, j), (j, i))]
+        asked = [(others, row) for others, row in asked if others.kept[row]]
+        return any(x.value >= DOUBTFUL for x in self._pairs.chances(asked))
 
 
 def _worst(judged: list[tuple[int, Chance]]) -> float:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pinwarp.core.chance import Chance, chance_of
+from pinwarp.core.chance import Chance, chances_of
 from pinwarp.core.evidence import Evidence, evidence
 from pinwarp.core.factor import SourceFactor, factorise
 from pinwarp.core.pair_field import PairField, Roughness
@@ -19,6 +19,9 @@ Matrix = NDArray[np.float64]
 LEAST_FREEDOM = 3
 # A smooth field is fitted to so many pairs around the one in question.
 AROUND = 80
+
+# A pair that is asked about, and what is left of the others besides.
+Asked = tuple[Evidence, int]
 
 
 class Witnesses:
@@ -52,28 +55,38 @@ class Witnesses:
             self._seen[out] = evidence(self._field, self._destination, out)
         return self._seen[out]
 
+    def leave_out(self, row: int) -> None:
+        """Leave a pair out for good: what was said with it is not asked for again."""
+        self._seen = {out: seen for out, seen in self._seen.items() if row in out}
+        self._chances = {key: known for key, known in self._chances.items() if row in key[0]}
+
     def exchange(self, i: int, j: int) -> None:
         """Exchange two destinations: from now on that is what the pairs are."""
         self._destination[[i, j]] = self._destination[[j, i]]
         for known in (self._seen, self._smooth, self._chances):
             known.clear()
 
-    def chance(self, seen: Evidence, row: int) -> Chance:
-        """Return the chance of a pair in the spline's own field."""
-        key = (seen.left_out, row)
-        if key not in self._chances:
-            self._chances[key] = chance_of(seen, row)
-        return self._chances[key]
+    def chances(self, asked: Sequence[Asked]) -> list[Chance]:
+        """Return the chances of pairs in the spline's own field."""
+        new = {(seen.left_out, row): (seen, row) for seen, row in asked}
+        new = {key: pair for key, pair in new.items() if key not in self._chances}
+        if new:
+            self._chances.update(zip(new, chances_of([*new.values()]), strict=True))
+        return [self._chances[seen.left_out, row] for seen, row in asked]
 
-    def agreed(self, seen: Evidence, row: int, limit: float) -> Chance:
-        """Return the chance of a pair; below a limit, that in a smooth field if it is larger."""
-        chance = self.chance(seen, row)
-        if chance.value >= limit:
-            return chance
+    def agreed(self, asked: Sequence[Asked], limit: float) -> list[Chance]:
+        """Return the chances of pairs; below a limit, those in a smooth field if larger."""
+        return [
+            chance if chance.value >= limit else self._smoother(seen, row, chance)
+            for (seen, row), chance in zip(asked, self.chances(asked), strict=True)
+        ]
+
+    def _smoother(self, seen: Evidence, row: int, chance: Chance) -> Chance:
         smooth, place = self._smoothly(seen.left_out, row)
         if smooth is None or not smooth.kept[place]:
             return chance
-        return replace(chance, value=max(chance.value, chance_of(smooth, place).value))
+        (other,) = chances_of([(smooth, place)])
+        return replace(chance, value=max(chance.value, other.value))
 
     def _smoothly(self, left_out: tuple[int, ...], row: int) -> tuple[Evidence | None, int]:
         """Return a smooth field of the pairs around one, if it can be judged, and its place."""
