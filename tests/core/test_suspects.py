@@ -340,6 +340,15 @@ def test_findings_speak_with_names_units_and_how_often_that_happens():
         "set without a mistake shows as much about once in 1,000. The other pairs were judged "
         "without it."
     )
+    measured = Finding(DISPLACED, (0,), 1e-9, (18.2, 7.81)).describe(names, "mm", {names[0]: 2.0})
+    assert measured == off.replace(" expect it;", " expect it, 9.1 times its own spread;")
+    for finding in (
+        Finding(EITHER, (1, 0), 0.01, (18.2, 7.8)),
+        Finding(LOOK, (1,), 0.2, (18.2, 7)),
+    ):
+        told = finding.describe(names, "mm", dict(zip(names, (2.0, 0.1), strict=True)))
+        assert "tip and base lies 18.2 mm from where the other pairs expect it, 182 times" in told
+        assert "spread" not in finding.describe(names, "mm", {names[0]: 2.0, names[1]: 0.0})
     assert "once in 30." in Finding(DISPLACED, (0,), 0.031, (18.2, 7.8)).describe(names)
     assert (
         Finding(EITHER, (0, 1), 0.01, (18.2, 7.8))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from qtpy.QtCore import QEvent, QPoint, QPointF, Qt
@@ -272,6 +274,14 @@ def test_a_displaced_landmark_is_named_and_can_be_disabled(displaced):
     assert (row.found.finding.kind, row.found.names) == (FindingKind.DISPLACED, (OFF,))
     assert "mm from where the other pairs expect it; " in displaced.said_by(row)
     assert "without a mistake shows as much about once in 1,000" in displaced.tip(OFF)
+    precise = [replace(x, destination_spread=0.5) for x in displaced.session.landmarks]
+    displaced.user.editor.commit(replace(displaced.session, landmarks=tuple(precise)), "Keep")
+    displaced.user.settle()
+    off = row.found.finding.others[0]
+    assert f" expect it, {off / 0.5:.0f} times its own spread; " in displaced.said_by(row)
+    displaced.user.trigger("remove_spreads")
+    displaced.user.settle()
+    assert "times its own spread" not in displaced.said_by(row)
     displaced.click_on(row.disable)
     assert not displaced.session.landmark(OFF).enabled
     assert displaced.findings.isHidden()

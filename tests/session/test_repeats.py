@@ -216,3 +216,16 @@ def test_check_and_report_tell_residuals_in_units_of_the_spread(session):
     rows = {(x.item, x.quantity): x.value for x in report.figures}
     assert rows[first.name, "residual / spread"] == pytest.approx(first.residual / first.spread)
     assert dict(report.facts)["Spread of the destination"].endswith("mm, as digitised again")
+
+
+def test_check_and_report_say_in_units_of_the_spread_how_far_a_pair_is_off(session):
+    kept = with_spreads_of(session, Side.DESTINATION, repeats_of(session))
+    name, (x, y, z) = kept.pairs[3].name, kept.pairs[3].destination
+    kept = edits.move(kept, name, Side.DESTINATION, (x, y, z + 60))
+    (found,) = [one for one in check(kept).findings if one.names == (name,)]
+    times = found.finding.others[0] / kept.landmark(name).destination_spread
+    assert f" expect it, {times:.0f} times its own spread; " in found.sentence
+    report = report_of("femur", solved(kept), datetime(2026, 1, 1, tzinfo=UTC))
+    assert found.sentence in report.findings
+    (plain,) = [one for one in check(without_spreads(kept)).findings if one.names == (name,)]
+    assert "spread" not in plain.sentence

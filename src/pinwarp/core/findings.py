@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum, StrEnum
 from typing import Protocol, TypeVar
@@ -125,7 +125,12 @@ class Finding:
         """Whether something is or may be wrong."""
         return self.severity > Severity.REMARK
 
-    def describe(self, names: Sequence[str] | None = None, unit: Ruler | str = "") -> str:
+    def describe(
+        self,
+        names: Sequence[str] | None = None,
+        unit: Ruler | str = "",
+        spreads: Mapping[str, float] | None = None,
+    ) -> str:
         """Say it in a sentence.
 
         Parameters
@@ -134,17 +139,26 @@ class Finding:
             The landmarks' names by row; without them the rows are counted from 0.
         unit
             How lengths are told, or only the unit put behind them.
+        spreads
+            How far landmarks may be off because of how they were digitised (mesh units), by
+            name, where that was measured: what a pair is off is told in units of it as well.
 
         Examples
         --------
         >>> Finding(FindingKind.CONFLICT, (0, 1), 2.5).describe(["apex", "tip"], "mm")
         'apex and tip lie at the same place on the source but 2.5 mm apart on the destination.'
+        >>> off = Finding(FindingKind.DISPLACED, (0,), 0.01, (4.1, 1.2))
+        >>> off.describe(["apex"], "mm", {"apex": 0.5}).split(";")[0]
+        'apex lies 4.1 mm from where the other pairs expect it, 8.2 times its own spread'
         """
         told = [names[row] if names else f"landmark {row}" for row in self.rows]
         who = _who(told)
         ruler = Ruler.of(unit)
         length = ruler.text(self.value)
         other, usual = (*(ruler.text(figure, 3) for figure in self.others), "", "")[:2]
+        expected = f"{other} from where the other pairs expect it"
+        if told and self.others and (spread := (spreads or {}).get(told[0], 0.0)) > 0:
+            expected += f", {_multiple(self.others[0] / spread)} times its own spread"
         match self.kind:
             case FindingKind.CONFLICT:
                 apart = length if len(self.rows) == 2 else f"up to {length}"
@@ -189,20 +203,20 @@ class Finding:
                 )
             case FindingKind.DISPLACED:
                 return (
-                    f"{who} lies {other} from where the other pairs expect it; {usual} is usual "
+                    f"{who} lies {expected}; {usual} is usual "
                     f"there. A set without a mistake shows as much about once in "
                     f"{_times(self.value)}. The other pairs were judged without it."
                 )
             case FindingKind.EITHER:
                 return (
                     f"{' or '.join(told)} is wrong: leaving out either explains the set "
-                    f"about equally well. {told[0]} lies {other} from where the other pairs "
-                    f"expect it; {usual} is usual there. The other pairs were judged without "
+                    f"about equally well. {told[0]} lies {expected}; "
+                    f"{usual} is usual there. The other pairs were judged without "
                     f"{told[0]}."
                 )
             case FindingKind.WORTH_A_LOOK:
                 return (
-                    f"{who} lies {other} from where the other pairs expect it; {usual} is usual "
+                    f"{who} lies {expected}; {usual} is usual "
                     f"there. About one set without a mistake in {_times(self.value)} has such a "
                     "pair."
                 )
@@ -264,6 +278,10 @@ def _times(chance: float) -> str:
     """Say about how often a chance comes true: once in so many."""
     times = 1 / max(chance, 1 / RAREST)
     return f"{times:,.0f}" if times < 10 else f"{float(f'{times:.1g}'):,.0f}"
+
+
+def _multiple(times: float) -> str:
+    return f"{times:.1f}" if times < 10 else f"{times:,.0f}"
 
 
 def _round_down(value: float) -> str:

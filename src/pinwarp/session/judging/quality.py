@@ -28,6 +28,7 @@ from pinwarp.core.quality import (
 )
 from pinwarp.core.spline import Spline, solve
 from pinwarp.core.suspects import suspects
+from pinwarp.session.repeat.spreads import spreads_on_destination
 from pinwarp.session.rulers import rulers_of
 from pinwarp.session.session import Session
 from pinwarp.session.warp.pair_names import pair_names
@@ -191,7 +192,10 @@ def named_findings(
     inputs
         What that warp was computed from.
     session
-        The session as it is now.
+        The session as it is now. Where it has landmark spreads, what a pair is off is told in
+        units of its own, too.
+    ruler
+        How lengths are told; without it as in the files.
 
     Examples
     --------
@@ -203,11 +207,12 @@ def named_findings(
     """
     names = pair_names(inputs, session)
     words = [name or "" for name in names]
+    spreads = spreads_on_destination(session)
     named = []
     for finding in findings:
         concerned = tuple(name for row in finding.rows if (name := names[row]) is not None)
         if len(concerned) == len(finding.rows):
-            sentence = finding.describe(words, ruler or rulers_of(session).session)
+            sentence = finding.describe(words, ruler or rulers_of(session).session, spreads)
             named.append(NamedFinding(finding, concerned, sentence))
     return tuple(named)
 

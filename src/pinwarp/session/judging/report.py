@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import platform
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime
 
@@ -104,6 +104,7 @@ def report_of(
     # Folds come behind what causes them, what is only isolated last.
     suggested = (named.finding for named in about_suggested(session))
     found = gravest_first((*quality.findings, *suggested, *patches))
+    spreads = spreads_on_destination(session)
     astray = elsewhere(session, {Side.DESTINATION: warp.destination_index})
     return Report(
         title=title,
@@ -114,14 +115,14 @@ def report_of(
         findings=(
             *(one.sentence for one in astray),
             *(one.sentence for one in different_units(session)),
-            *(finding.describe(names, ruler) for finding in found),
+            *(finding.describe(names, ruler, spreads) for finding in found),
             *(f"{row.path}: {row.flag}" for row in elements if row.flag),
         ),
         figures=tuple(
             # What is only rounding is 0.
             replace(row, value=ruler.shown(row.value)) if row.unit == unit else row
             for row in (
-                *_of_pairs(warp, quality),
+                *_of_pairs(warp, quality, spreads),
                 *_of_groups(result, unit),
                 *_of_surfaces(compared, folds, unit),
                 *_of_warp(quality, unit),
@@ -236,9 +237,8 @@ def _mesh_text(session: Session, side: Side) -> str:
     )
 
 
-def _of_pairs(warp: SolvedWarp, quality: Quality) -> list[ReportRow]:
+def _of_pairs(warp: SolvedWarp, quality: Quality, spreads: Mapping[str, float]) -> list[ReportRow]:
     unit, left_out = warp.session.unit, quality.left_out
-    spreads = spreads_on_destination(warp.session)
     figures = []
     for row, pair in enumerate(warp.session.pairs):
         residual = float(warp.residuals[row])
