@@ -12,6 +12,7 @@ from tests.core.mistaken import MadeUp, made_up, smooth, stationary
 
 Row = dict[str, Any]
 Found = list[Finding]
+Judged = tuple[MadeUp, Found]
 
 FIELDS = {"stationary": stationary, "smooth": smooth}
 SIZES = (7, 10, 16, 25, 60, 150, 300, 600)
@@ -25,35 +26,40 @@ def rates() -> Iterator[Row]:
     """Shares of the sets, in per cent: what should not be said, then what should."""
     for name, field in FIELDS.items():
         for count in SIZES:
-            sets = min(max(WORK // count, LEAST), MOST)
-            share = _shares(count, sets, field)
-            row: Row = {"what": name, "pairs": count, "sets": sets}
-            row["clean: strict"] = share(lambda _m, found: bool(found))
-            row["clean: a look"] = share(_worth, everything=True)
-            if count <= LARGE:
-                row["one named"] = share(_all_named, displaced=1)
-                row["two named"] = share(_all_named, displaced=2, off=0.15)
-                row["innocents"] = share(_innocents, displaced=1)
-                row["false swaps"] = share(_false_swaps, displaced=1)
-                row["swap exactly"] = share(_exactly, swap=True)
-                row["swap and one"] = share(_all_named, swap=True, displaced=1)
-                row["mirror and one"] = 100 * _mirrors(count, sets, field)
-            yield row
+            yield rates_of(name, field, count)
 
 
-def _shares(count: int, sets: int, field: Any) -> Callable[..., float]:
-    def share(
-        says: Callable[[MadeUp, Found], bool], *, everything: bool = False, **mistakes: Any
-    ) -> float:
-        said = 0
-        for seed in range(sets):
-            case = made_up(count, seed, field, **mistakes)
-            found = suspects(case.factor, case.destination)
-            strict = [x for x in found if everything or x.severity is Severity.WRONG]
-            said += says(case, strict)
-        return 100 * said / sets
+def rates_of(name: str, field: Any, count: int) -> Row:
+    """Return the shares of one field and size."""
+    sets = min(max(WORK // count, LEAST), MOST)
 
-    return share
+    def judged(**mistakes: Any) -> list[Judged]:
+        cases = (made_up(count, seed, field, **mistakes) for seed in range(sets))
+        return [(case, list(suspects(case.factor, case.destination))) for case in cases]
+
+    row: Row = {"what": name, "pairs": count, "sets": sets}
+    clean = judged()
+    row["clean: strict"] = _share(lambda _m, found: bool(_strict(found)), clean)
+    row["clean: a look"] = _share(_worth, clean)
+    if count <= LARGE:
+        displaced, two = judged(displaced=1), judged(displaced=2, off=0.15)
+        row["one named"] = _share(_all_named, displaced)
+        row["two named"] = _share(_all_named, two)
+        row["innocents"] = _share(_innocents, displaced)
+        row["false swaps"] = _share(_false_swaps, displaced)
+        row["swap exactly"] = _share(_exactly, judged(swap=True))
+        row["swap and one"] = _share(_all_named, judged(swap=True, displaced=1))
+        row["mirror and one"] = _share(_mirrored, displaced)
+    return row
+
+
+def _share(says: Callable[[MadeUp, Found], bool], judged: list[Judged]) -> float:
+    """Return of how many sets something is so, in per cent."""
+    return 100 * sum(says(case, found) for case, found in judged) / len(judged)
+
+
+def _strict(found: Found) -> Found:
+    return [x for x in found if x.severity is Severity.WRONG]
 
 
 def _worth(_case: MadeUp, found: Found) -> bool:
@@ -61,24 +67,24 @@ def _worth(_case: MadeUp, found: Found) -> bool:
 
 
 def _all_named(case: MadeUp, found: Found) -> bool:
-    named = {row for finding in found for row in finding.rows}
+    named = {row for finding in _strict(found) for row in finding.rows}
     return case.wrong <= named
 
 
 def _innocents(case: MadeUp, found: Found) -> bool:
-    return any(not case.wrong.intersection(finding.rows) for finding in found)
+    return any(not case.wrong.intersection(finding.rows) for finding in _strict(found))
 
 
 def _false_swaps(case: MadeUp, found: Found) -> bool:
-    return any(x.kind is FindingKind.SWAPPED and not case.wrong.intersection(x.rows) for x in found)
+    swaps = (x.rows for x in found if x.kind is FindingKind.SWAPPED)
+    return any(not case.wrong.intersection(rows) for rows in swaps)
 
 
 def _exactly(case: MadeUp, found: Found) -> bool:
-    return [x.kind for x in found if set(x.rows) == set(case.swapped)] == [FindingKind.SWAPPED]
+    kinds = [x.kind for x in _strict(found) if set(x.rows) == set(case.swapped)]
+    return kinds == [FindingKind.SWAPPED]
 
 
-def _mirrors(count: int, sets: int, field: Any) -> float:
-    """The share of mirrored sets that are known, one of them displaced."""
-    cases = (made_up(count, seed, field, displaced=1) for seed in range(sets))
-    told = [is_mirrored(x.factor.source, x.destination * [1, 1, -1]) for x in cases]
-    return sum(told) / sets
+def _mirrored(case: MadeUp, _found: Found) -> bool:
+    """Whether the set is known for one where it is mirrored."""
+    return is_mirrored(case.factor.source, case.destination * [1, 1, -1])
