@@ -8,7 +8,7 @@ log likelihoods are those of a Gaussian field whose variance is profiled out.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -20,6 +20,8 @@ Matrix = NDArray[np.float64]
 
 # A pair that the others leave so little of is determined by itself: it cannot be judged.
 UNJUDGED = 1e-9
+# What an affine map leaves of destinations of unit length, by rounding.
+LEAST_MISFIT = 1e-24
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,10 +128,41 @@ class Evidence:
             entries = entries - np.einsum("nd,nkd->nk", onto, taken[near])
         return np.asarray(entries)
 
+    @cached_property
+    def _known(self) -> dict[int, tuple[Matrix, Matrix]]:
+        return {}
+
     def _taken(self, level: int) -> tuple[Matrix, Matrix]:
         """Return the columns of those left out as they were, and the same by their inverse."""
-        taken = self.field.entries(level, self.left_out)
-        return taken, taken @ self.inverse[level]
+        if level not in self._known:
+            taken = self.field.entries(level, self.left_out)
+            self._known[level] = taken, taken @ self.inverse[level]
+        return self._known[level]
+
+    def without(self, rows: Sequence[int]) -> Evidence:
+        """Return what all say without some, of what all say."""
+        rows = list(rows)
+        if not rows:
+            return self
+        # (k, n, d), (k, d, d), (k, d, 3)
+        taken = self.field.entries(slice(None), rows)
+        block = taken[:, rows]
+        inverse = np.asarray(np.linalg.pinv(block, hermitian=True), dtype=np.float64)
+        onto = taken @ inverse
+        theirs = self.pulls[rows].transpose(2, 0, 1)
+        misfit = self.misfit - np.sum(theirs * (inverse @ theirs), axis=(1, 2))
+        precision = self.precision - np.sum(onto * taken, axis=2).T
+        return replace(
+            self,
+            left_out=tuple(rows),
+            pulls=self.pulls - (onto @ theirs).transpose(1, 2, 0),
+            precision=precision,
+            misfit=np.maximum(misfit, LEAST_MISFIT),
+            log_det=self.log_det - np.linalg.slogdet(block)[1],
+            freedom=self.freedom - len(rows),
+            kept=_judged(precision, rows),
+            inverse=inverse,
+        )
 
 
 def evidence(field: PairField, destination: Matrix, left_out: Sequence[int] = ()) -> Evidence:
@@ -154,37 +187,28 @@ def evidence(field: PairField, destination: Matrix, left_out: Sequence[int] = ()
     >>> int(seen.one_wrong[:, seen.level].argmax())
     4
     """
-    modes, certainty, rows = field.modes, field.certainty, list(left_out)
+    modes, certainty = field.modes, field.certainty
     parts = modes.T @ destination
-    count, levels = len(modes), len(field.noise)
+    levels = len(field.noise)
     spread = parts[:, :, None] * certainty[:, None, :]
-    pulls = (modes @ spread.reshape(len(parts), 3 * levels)).reshape(count, 3, levels)
-    precision, log_det = field.precision, field.log_det
-    misfit = np.sum(parts * parts, axis=1) @ certainty
-    inverse = np.zeros((levels, 0, 0))
-    if rows:
-        # (k, n, d), (k, d, d), (k, d, 3)
-        taken = field.entries(slice(None), rows)
-        block = taken[:, rows]
-        inverse = np.asarray(np.linalg.pinv(block, hermitian=True), dtype=np.float64)
-        onto = taken @ inverse
-        theirs = pulls[rows].transpose(2, 0, 1)
-        misfit = misfit - np.sum(theirs * (inverse @ theirs), axis=(1, 2))
-        log_det = log_det - np.linalg.slogdet(block)[1]
-        pulls = pulls - (onto @ theirs).transpose(1, 2, 0)
-        precision = precision - np.sum(onto * taken, axis=2).T
-    kept = np.ones(count, dtype=np.bool_)
-    kept[rows] = False
-    kept &= precision[:, 0] > UNJUDGED * float(np.median(precision[:, 0]))
-    return Evidence(
+    pulls = modes @ spread.reshape(len(parts), 3 * levels)
+    whole = Evidence(
         field=field,
         destination=destination,
-        left_out=tuple(rows),
-        pulls=pulls,
-        precision=precision,
-        misfit=np.maximum(misfit, 1e-24),
-        log_det=log_det,
-        freedom=modes.shape[1] - len(rows),
-        kept=kept,
-        inverse=inverse,
+        left_out=(),
+        pulls=pulls.reshape(len(modes), 3, levels),
+        precision=field.precision,
+        misfit=np.maximum(np.sum(parts * parts, axis=1) @ certainty, LEAST_MISFIT),
+        log_det=field.log_det,
+        freedom=modes.shape[1],
+        kept=_judged(field.precision),
+        inverse=np.zeros((levels, 0, 0)),
     )
+    return whole.without(left_out)
+
+
+def _judged(precision: Matrix, left_out: Sequence[int] = ()) -> NDArray[np.bool_]:
+    """Return which pairs can be judged."""
+    kept = np.asarray(precision[:, 0] > UNJUDGED * float(np.median(precision[:, 0])))
+    kept[list(left_out)] = False
+    return kept

@@ -142,7 +142,10 @@ def _modes(factor: SourceFactor, roughness: Roughness) -> tuple[Matrix, Matrix]:
         return factor.modes[0][usable], factor.modes_at_landmarks[:, usable]
     unit = (factor.source - factor.centre) / factor.scale
     fixed = factor.rank + 1
-    variance = factor.reflections.conjugate(cdist(unit, unit) ** roughness.value)[fixed:, fixed:]
+    apart = cdist(unit, unit)
+    # A square and a product take a tenth of the time of a cube.
+    kernel = apart ** (roughness.value - 1) * apart
+    variance = factor.reflections.conjugate(kernel)[fixed:, fixed:]
     values, vectors = np.linalg.eigh(variance)
     # What duplicate landmarks leave undetermined.
     usable = values > 8 * len(unit) * np.finfo(np.float64).eps * max(float(values[-1]), 1.0)

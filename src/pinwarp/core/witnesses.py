@@ -39,6 +39,7 @@ class Witnesses:
         self._factor = factor
         self._field = PairField.of(factor)
         self._destination = destination.copy()
+        self._all = evidence(self._field, self._destination)
         self._seen: dict[tuple[int, ...], Evidence] = {}
         self._smooth: dict[tuple[int, ...], Evidence | None] = {}
         self._chances: dict[tuple[tuple[int, ...], int], Chance] = {}
@@ -52,7 +53,7 @@ class Witnesses:
         """Return what the others say without some."""
         out = tuple(sorted(rows))
         if out not in self._seen:
-            self._seen[out] = evidence(self._field, self._destination, out)
+            self._seen[out] = self._all.without(out)
         return self._seen[out]
 
     def leave_out(self, row: int) -> None:
@@ -63,6 +64,7 @@ class Witnesses:
     def exchange(self, i: int, j: int) -> None:
         """Exchange two destinations: from now on that is what the pairs are."""
         self._destination[[i, j]] = self._destination[[j, i]]
+        self._all = evidence(self._field, self._destination)
         for known in (self._seen, self._smooth, self._chances):
             known.clear()
 
