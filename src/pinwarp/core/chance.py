@@ -68,8 +68,8 @@ def chances_of(asked: Sequence[tuple[Evidence, int]]) -> list[Chance]:
     Parameters
     ----------
     asked
-        One and more times the pairs, of one field, with a pair that is kept; three modes or more
-        are left.
+        The pairs as they are seen, all in one field, and one of those that are kept; three modes
+        or more are left.
 
     Examples
     --------
