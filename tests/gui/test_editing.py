@@ -230,12 +230,17 @@ def test_with_three_or_four_pairs_the_disc_comes_of_the_bones_size(user):
             break
         user.drag(viewport, at, at + QPoint(60, 0))
     assert not viewport.sees(ghost.position)
+    hint, status = user.window.parts.guidance.hint, user.window.statusBar()
+    assert "Space turns the view to the ghost" in hint.text()
     viewport.setFocus()
     user.press(Qt.Key.Key_Space)
     assert not user.session.landmark(ghost.name).is_complete
     assert viewport.sees(ghost.position)
+    assert "Space accepts it" in status.currentMessage()
+    assert "Space accepts the ghost" in hint.text()
     user.press(Qt.Key.Key_Space)
     assert user.session.landmark(ghost.name).destination == ghost.position
+    assert status.currentMessage() == ""
 
 
 # The guide

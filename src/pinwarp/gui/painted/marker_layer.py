@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from qtpy.QtCore import QPointF, QRectF, QSizeF, Qt, QTimer
+from qtpy.QtCore import QPointF, QRectF, QSizeF, Qt, QTimer, Signal
 from qtpy.QtGui import QPainter, QPaintEvent
 from qtpy.QtWidgets import QWidget
 
@@ -76,6 +76,8 @@ _OUT_OF_SIGHT = "The bone is out of sight.\nHome looks at both bones as a whole.
 class MarkerLayer(QWidget):
     """A transparent sheet over one viewport; the mouse does not see it.
 
+    ``looked_anew`` says that it was painted for a camera that stands elsewhere.
+
     Parameters
     ----------
     projection
@@ -83,6 +85,8 @@ class MarkerLayer(QWidget):
     parent
         What it lies on.
     """
+
+    looked_anew = Signal()
 
     def __init__(self, projection: Projection, parent: QWidget) -> None:
         super().__init__(parent)
@@ -210,7 +214,7 @@ class MarkerLayer(QWidget):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Paint what the scene holds for this sheet."""
-        self.painted_for = self._projection.view_key()
+        before, self.painted_for = self.painted_for, self._projection.view_key()
         self._from_right = set()
         with QPainter(self) as painter:
             painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -227,6 +231,8 @@ class MarkerLayer(QWidget):
         points.is_resting = model.is_resting = False
         if points.is_stale or model.is_stale:
             self._again.start()
+        if self.painted_for != before:
+            self.looked_anew.emit()
 
     def show_crosshair(self, at: QPointF | None) -> None:
         """Paint the crosshair that the arrow keys move; None takes it away."""

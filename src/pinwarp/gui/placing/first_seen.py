@@ -31,12 +31,16 @@ class FirstSeen:
 
     def is_seen(self, name: str, side: Side, position: Position) -> bool:
         """Whether a landmark's place is seen, or was just shown as well as can be; else show it."""
-        canvas = self._canvases[side]
-        if self._shown == (name, side, hash(canvas.view_key())):
-            # Where the bone hides it from everywhere one need not ask for ever.
+        if not self.is_out_of_sight(name, side, position):
             return True
-        if not self._views.show_place(side, position):
-            return True
-        self._shown = (name, side, hash(canvas.view_key()))
+        self._views.show_place(side, position)
+        self._shown = (name, side, hash(self._canvases[side].view_key()))
         self._turned(name)
         return False
+
+    def is_out_of_sight(self, name: str, side: Side, position: Position) -> bool:
+        """Whether a view turns to a landmark's place before it is accepted."""
+        canvas = self._canvases[side]
+        # Where the bone hides it from everywhere one need not ask for ever.
+        is_shown = self._shown == (name, side, hash(canvas.view_key()))
+        return not is_shown and not canvas.sees(position)

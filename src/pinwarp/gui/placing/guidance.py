@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 from qtpy.QtWidgets import QLabel
 
@@ -17,6 +17,7 @@ from pinwarp.gui.scene.drawables import Drawable, NextClick
 from pinwarp.gui.scene.key_words import with_own_keys
 from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, FileTasks
+from pinwarp.gui.views.canvas import Canvas
 from pinwarp.io.template import read_template
 from pinwarp.session.editor import Editor
 from pinwarp.session.guide import next_incomplete, step_at, with_template
@@ -43,6 +44,8 @@ class Guidance(Capability):
     ----------
     editor, hand, ghosts
         Where the words come from.
+    views
+        Where one looks: what a key does next may follow from it.
     tasks
         Reads, asks and tells.
     """
@@ -54,11 +57,13 @@ class Guidance(Capability):
         editor: Editor,
         hand: Hand,
         ghosts: Ghosts,
+        views: Mapping[Side, Canvas],
         tasks: FileTasks[Dialogs],
     ) -> None:
         self._editor = editor
         self._hand = hand
         self._ghosts = ghosts
+        self._views = views
         self._tasks = tasks
         self._others: list[Callable[[], str]] = []
         self.bar = bar = GuideBar()
@@ -108,7 +113,9 @@ class Guidance(Capability):
         for signal in self._shown_on:
             signal.connect(self.show)
         # A ghost comes with the warp, after the click that asked for it.
-        ghosts.renewed.connect(self._on_ghosts)
+        ghosts.renewed.connect(self._on_news)
+        for view in views.values():
+            view.layer.looked_anew.connect(self._on_news)
         self.show()
 
     def shut_down(self) -> None:
@@ -116,9 +123,11 @@ class Guidance(Capability):
         self._editor.session_changed.disconnect(self._on_session)
         for signal in self._shown_on:
             signal.disconnect(self.show)
-        self._ghosts.renewed.disconnect(self._on_ghosts)
+        self._ghosts.renewed.disconnect(self._on_news)
+        for view in self._views.values():
+            view.layer.looked_anew.disconnect(self._on_news)
 
-    def _on_ghosts(self, *_result: object) -> None:
+    def _on_news(self, *_result: object) -> None:
         if not self._editor.is_previewing:
             self._show_hint()
 
@@ -192,10 +201,18 @@ class Guidance(Capability):
         on_each = f"A click on the source places {targets[0]}, on the destination {targets[1]}."
         if targets[0] == targets[1]:
             on_each = f"A click on either bone places {targets[0]}."
-        space = self._hand.accept_action.keys
-        ghost = f"  {space} accepts the ghost." if self._hand.offers_ghost else ""
         says = on_each if any(map(self._ghosts.target, Side)) else on_both
-        self.hint.setText(f"{says}{ghost}")
+        self.hint.setText(f"{says}{self._ghost_words()}")
+
+    def _ghost_words(self) -> str:
+        """Say what the key that accepts ghosts does next."""
+        key = self._hand.accept_action.keys
+        ghost = self._ghosts.next(self._editor.selection.side)
+        if ghost is not None and self._hand.first_seen.is_out_of_sight(
+            ghost.name, ghost.side, ghost.position
+        ):
+            return f"  {key} turns the view to the ghost, and accepts it at the second press."
+        return f"  {key} accepts the ghost." if self._hand.offers_ghost else ""
 
     def _hover_words(self, name: str) -> str:
         landmark = self._editor.session.landmark(name)

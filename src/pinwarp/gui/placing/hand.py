@@ -235,6 +235,8 @@ class Hand(Capability):
             return
         session = edits.move(self._editor.committed, ghost.name, ghost.side, ghost.position)
         self._placed(session, f"Accept {ghost.name}", ghost.name, ghost.side)
+        # What was said of a view that has turned is over.
+        self.refused.emit("")
 
     def _tell_turned(self, name: str) -> None:
         self.refused.emit(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QWidget
 
-from pinwarp.core.landmarks import Landmark, Side
+from pinwarp.core.landmarks import Landmark, Position, Side
 from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.placing.hand import Hand
 from pinwarp.session import edits
@@ -44,7 +44,10 @@ class Reviewing(Capability):
         key = self._hand.accept_action.keys
         if len(self._editor.selection.names) > 1:
             return f"{key} looks at {selected.name}, the first of those that are only suggested."
-        return f"{selected.name} is only suggested: {key} confirms it where it is, a drag moves it."
+        does = "confirms it where it is"
+        if self._hand.first_seen.is_out_of_sight(*_place_of(selected)):
+            does = "turns the view to it, then confirms it where it is"
+        return f"{selected.name} is only suggested: {key} {does}, a drag moves it."
 
     def begin(self) -> None:
         """Look at the first suggested landmark, or the one after the selected."""
@@ -89,6 +92,10 @@ class Reviewing(Capability):
         self._is_seen(landmark)
 
     def _is_seen(self, landmark: Landmark) -> bool:
-        place = landmark.destination
-        assert place is not None, "what is suggested is somewhere"
-        return self._hand.first_seen.is_seen(landmark.name, Side.DESTINATION, place)
+        return self._hand.first_seen.is_seen(*_place_of(landmark))
+
+
+def _place_of(landmark: Landmark) -> tuple[str, Side, Position]:
+    place = landmark.destination
+    assert place is not None, "what is suggested is somewhere"
+    return landmark.name, Side.DESTINATION, place

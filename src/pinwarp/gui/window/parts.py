@@ -102,7 +102,7 @@ class Parts:
         self.hand = Hand(editor, views, self.ghosts, self.views)
         self.crosshair = Crosshair(editor, self.ghosts, views)
         self.bones = BoneEdits(editor, say)
-        self.guidance = Guidance(editor, self.hand, self.ghosts, tasks)
+        self.guidance = Guidance(editor, self.hand, self.ghosts, views, tasks)
         self.reviewing = Reviewing(editor, self.hand, destination)
         self.guidance.give_way_to(lambda: self.reviewing.words)
         self.table = TablePresenter(editor, self.warps, self.hand, dialogs, say)
