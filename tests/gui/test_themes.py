@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 import pytest
-from qtpy.QtCore import Qt
-from qtpy.QtGui import QColor, QImage, QPalette
+from qtpy.QtCore import QPointF, Qt
+from qtpy.QtGui import QColor, QImage, QPainter, QPalette
 from qtpy.QtTest import QTest
 from qtpy.QtWidgets import (
     QAbstractButton,
@@ -24,8 +27,26 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
-from pinwarp.core.landmarks import Side
-from pinwarp.gui.style.theme import SOURCE_COLOUR, WRAP_COLOUR, backgrounds
+from pinwarp.core.landmarks import LandmarkState, Side
+from pinwarp.gui.painted.arrows import paint_arrow
+from pinwarp.gui.painted.markers import (
+    GHOST_RADIUS,
+    draw_crosshair,
+    draw_ghost,
+    draw_star,
+    marker_pixmap,
+)
+from pinwarp.gui.painted.model_elements import ModelPainter
+from pinwarp.gui.painted.semilandmarks import SemilandmarkPainter, dot_pixmap, handle_pixmap
+from pinwarp.gui.scene.drawables import DotKind, PathLine, Paths, Slides
+from pinwarp.gui.scene.model_drawables import ElementLine, ModelElements
+from pinwarp.gui.style.theme import (
+    DESTINATION_COLOUR,
+    GROUP_COLOURS,
+    SOURCE_COLOUR,
+    backgrounds,
+)
+from pinwarp.session.model.elements import OutlineKind
 
 # Of text, and of what is pressed or moved, against what is around (WCAG 2.2, 1.4.3 and 1.4.11).
 READABLE, VISIBLE = 4.5, 3.0
@@ -72,7 +93,11 @@ def pixels(widget: QWidget) -> np.ndarray:
     """(h, w, 3) colours of a widget as it is painted in its window, from 0 to 1."""
     top = widget.window()
     rect = widget.rect().translated(widget.mapTo(top, widget.rect().topLeft()))
-    image = top.grab(rect).toImage().convertToFormat(QImage.Format.Format_RGB888)
+    return colours_of(top.grab(rect).toImage().convertToFormat(QImage.Format.Format_RGB888))
+
+
+def colours_of(image: QImage) -> np.ndarray:
+    """(h, w, 3) colours of a picture in RGB, from 0 to 1."""
     data = np.frombuffer(image.constBits(), np.uint8)
     rows = data.reshape(image.height(), image.bytesPerLine())[:, : 3 * image.width()]
     return rows.reshape(image.height(), image.width(), 3) / 255
@@ -128,11 +153,113 @@ def test_the_buttons_of_a_panels_title_stand_out(sample):
             assert greatest_contrast(pixels(button)) >= VISIBLE, button.objectName()
 
 
-@pytest.mark.parametrize("dark", [False, True])
-def test_wraps_of_a_model_stand_out_from_either_background_and_from_ivory(dark):
-    names = (*backgrounds(dark), SOURCE_COLOUR, WRAP_COLOUR)
-    *around, ink = (luminances(np.array(QColor(name).getRgbF()[:3])) for name in names)
-    assert min(contrast(ink, one) for one in around) >= VISIBLE
+class Sheet:
+    """A flat sheet before which nothing is hidden: a position's x and y are its pixels."""
+
+    @staticmethod
+    def view_key():
+        return 0
+
+    @staticmethod
+    def behind_surface(positions):
+        return np.zeros(len(positions), dtype=bool)
+
+    @staticmethod
+    def project(positions):
+        return np.asarray(positions, dtype=float)[:, :2]
+
+
+SLANTED = np.array([[8.0, 11.0, 0.0], [30.0, 17.0, 0.0], [52.0, 48.0, 0.0]])
+MIDDLE = QPointF(30, 30)
+
+
+def paint_model(kind: OutlineKind, is_chosen: bool = False):
+    line = ElementLine(SLANTED, kind, is_chosen)
+    nothing = np.zeros(0, dtype=bool)
+    elements = ModelElements(np.zeros((0, 3)), nothing, nothing, (line,))
+    return lambda painter: ModelPainter(Sheet, Sheet.project).paint(painter, elements)
+
+
+def paint_element_point(of_muscle: bool):
+    elements = ModelElements(
+        np.array([[30.0, 30.0, 0.0]]), np.array([of_muscle]), np.array([False]), ()
+    )
+    return lambda painter: ModelPainter(Sheet, Sheet.project).paint(painter, elements)
+
+
+def paint_group(colour: int, is_ghost: bool):
+    paths = Paths((PathLine(SLANTED, colour, is_ghost),))
+    return lambda painter: SemilandmarkPainter(Sheet, Sheet.project).paint_paths(painter, paths)
+
+
+def paint_slide(colour: int):
+    slides = Slides(SLANTED[:1], SLANTED[2:], np.array([colour]))
+    return lambda painter: SemilandmarkPainter(Sheet, Sheet.project).paint_slides(painter, slides)
+
+
+def paint_pixmap(pixmap):
+    return lambda painter: painter.drawPixmap(MIDDLE - QPointF(13, 13), pixmap())
+
+
+def painted() -> dict[str, Callable[[QPainter], object]]:
+    """All that is painted over bones, each by what paints it in the window."""
+    start, end = QPointF(8, 11), QPointF(52, 48)
+    things = {
+        "ghost": lambda painter: draw_ghost(painter, MIDDLE, GHOST_RADIUS),
+        "star": lambda painter: draw_star(painter, MIDDLE),
+        "crosshair": lambda painter: draw_crosshair(painter, MIDDLE),
+        "residual": lambda painter: paint_arrow(painter, start, end, 0),
+        "left out": lambda painter: paint_arrow(painter, start, end, 0, left_out=True),
+        "path point": paint_element_point(True),
+        "marker": paint_element_point(False),
+    }
+    for kind in OutlineKind:
+        things[kind.value] = paint_model(kind)
+        things[f"chosen {kind.value}"] = paint_model(kind, is_chosen=True)
+    # What is not placed is nowhere.
+    for state in set(LandmarkState) - {LandmarkState.EMPTY}:
+        things[state.value] = paint_pixmap(partial(marker_pixmap, state, False, False, 1.0))
+    for row in range(len(GROUP_COLOURS)):
+        things[f"curve {row}"] = paint_group(row, False)
+        things[f"expected curve {row}"] = paint_group(row, True)
+        things[f"slide {row}"] = paint_slide(row)
+        for is_ghost in (False, True):
+            pixmap = partial(handle_pixmap, row, is_ghost, False, 1.0)
+            things[f"handle {row} {is_ghost}"] = paint_pixmap(pixmap)
+        for kind in DotKind:
+            pixmap = partial(dot_pixmap, row, kind, False, 1.0)
+            things[f"dot {row} {kind.name}"] = paint_pixmap(pixmap)
+    return things
+
+
+@pytest.mark.parametrize("bone", [SOURCE_COLOUR, DESTINATION_COLOUR])
+def test_all_that_is_painted_stands_out_from_either_bone(qapp, bone):
+    pale = {name: measured for name, measured in contrasts(bone).items() if measured < VISIBLE}
+    assert pale == {}
+
+
+@pytest.mark.parametrize("background", [*backgrounds(False), *backgrounds(True)])
+def test_what_reaches_beyond_the_bone_stands_out_from_the_background(qapp, background):
+    # Slides end on the bone, and excluded points stay there.
+    pale = {
+        name: measured
+        for name, measured in contrasts(background).items()
+        if measured < VISIBLE and not name.startswith("slide") and "EXCLUDED" not in name
+    }
+    assert pale == {}
+
+
+def contrasts(around: str) -> dict[str, float]:
+    """The greatest contrast of each painted thing with a colour that is all around it."""
+    found = {}
+    for name, paint in painted().items():
+        image = QImage(60, 60, QImage.Format.Format_RGB888)
+        image.fill(QColor(around))
+        with QPainter(image) as painter:
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            paint(painter)
+        found[name] = greatest_contrast(colours_of(image))
+    return found
 
 
 def test_no_title_of_a_panel_is_cut_at_the_size_in_which_a_window_opens(sample):

@@ -26,6 +26,8 @@ _LOOKS: dict[OutlineKind, tuple[str, float, list[float]]] = {
     OutlineKind.AXIS_Y: (theme.AXIS_COLOURS[1], 2.2, []),
     OutlineKind.AXIS_Z: (theme.AXIS_COLOURS[2], 2.2, []),
 }
+_WRAP_RIM = QColor(theme.PAPER)
+_WRAP_RIM.setAlphaF(0.6)
 
 
 class ModelPainter:
@@ -95,14 +97,16 @@ class ModelPainter:
 def _paint_line(painter: QPainter, line: ElementLine, run: NDArray, is_hidden: bool) -> None:
     name, width, dashes = _LOOKS[line.kind]
     polygon = QPolygonF([QPointF(x, y) for x, y in run.tolist()])
-    is_wrap = line.kind is OutlineKind.WRAP
     painter.setOpacity(FAINT if is_hidden and not line.is_chosen else 1.0)
     if line.is_chosen:
         painter.setPen(QPen(QColor(theme.SELECTED_COLOUR), width + 4.0))
         painter.drawPolyline(polygon)
-    elif not is_wrap:
-        # A rim, so that it is seen on every bone; wraps are many, and stay in the background.
-        painter.setPen(_pen(theme.PAPER, width + 1.6, width, dashes))
+    else:
+        # A rim, so that it is seen before every background; wraps are many, theirs is faint.
+        rim = _pen(theme.PAPER, width + 1.6, width, dashes)
+        if line.kind is OutlineKind.WRAP:
+            rim.setColor(_WRAP_RIM)
+        painter.setPen(rim)
         painter.drawPolyline(polygon)
     painter.setPen(_pen(name, width + 0.6 * line.is_chosen, width, dashes))
     painter.drawPolyline(polygon)

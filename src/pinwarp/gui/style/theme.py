@@ -32,23 +32,23 @@ STATE_COLOURS = {
     LandmarkState.EMPTY: "#6f757e",
 }
 SELECTED_COLOUR = "#F0E442"
-GHOST_COLOUR = "#0072B2"
+GHOST_COLOUR = "#0068a3"
 WARNING_COLOUR = "#D55E00"
 # Numbers as bars, and the arrows from where a landmark is carried to where it belongs.
 BAR_COLOUR = "#0072B2"
 ARROW_COLOUR = "#20242b"
-LEFT_OUT_COLOUR = "#D55E00"
+LEFT_OUT_COLOUR = "#a84800"
 
 # Of curves and patches, one after the other: told apart from one another, from bones and landmarks.
-GROUP_COLOURS = ("#7a3fb0", "#b3402a", "#0e7c86", "#c2377f", "#2b4fa8", "#5c6410")
+GROUP_COLOURS = ("#7a3fb0", "#b03d28", "#0b6e77", "#b02f72", "#2b4fa8", "#5c6410")
 
 FOLD_COLOUR = "#D55E00"
 
 # What stands on a body of a model: muscles, markers, wraps, and the axes of frames.
 MUSCLE_COLOUR = "#a3262a"
-MODEL_MARKER_COLOUR = "#0e7c86"
-WRAP_COLOUR = "#6577d6"
-AXIS_COLOURS = ("#c44a00", "#00703f", "#0072B2")
+MODEL_MARKER_COLOUR = "#0b6e77"
+WRAP_COLOUR = "#4453b4"
+AXIS_COLOURS = ("#ad4100", "#00703f", "#0068a3")
 
 # Maps of lengths: even steps of lightness from dark to light, told apart without red and green.
 SEQUENTIAL_COLOURS = (
