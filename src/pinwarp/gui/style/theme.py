@@ -48,7 +48,7 @@ FOLD_COLOUR = "#D55E00"
 MUSCLE_COLOUR = "#a3262a"
 MODEL_MARKER_COLOUR = "#0b6e77"
 WRAP_COLOUR = "#4453b4"
-AXIS_COLOURS = ("#ad4100", "#00703f", "#0068a3")
+AXIS_COLOURS = ("#ad4100", "#00703f", "#1f4fa8")
 
 # Maps of lengths: even steps of lightness from dark to light, told apart without red and green.
 SEQUENTIAL_COLOURS = (
