@@ -268,8 +268,9 @@ class Hand(Capability):
         """Show a landmark elsewhere while it is dragged."""
         editor = self._editor
         editor.select(name, side=side)
-        # It may have been locked since it was drawn.
-        if not self._is_locked(editor.committed.landmark(name)):
+        landmark = editor.committed.landmark(name)
+        # It may have been deleted or locked since it was drawn.
+        if landmark is not None and not self._is_locked(landmark):
             editor.preview(edits.move(editor.committed, name, side, as_position(position)))
 
     def drop(self, name: str) -> None:

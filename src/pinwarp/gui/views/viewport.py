@@ -8,7 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from qtpy.QtCore import QEvent, QPointF, Qt, QTimer, Signal
-from qtpy.QtGui import QDragEnterEvent, QDropEvent, QKeyEvent, QMouseEvent, QWheelEvent
+from qtpy.QtGui import (
+    QDragEnterEvent,
+    QDropEvent,
+    QKeyEvent,
+    QKeySequence,
+    QMouseEvent,
+    QWheelEvent,
+)
 from qtpy.QtWidgets import QWidget
 
 from pinwarp.core.landmarks import Side
@@ -286,15 +293,15 @@ class Viewport(Canvas):
     def event(self, event: QEvent) -> bool:
         """Claim keys that mean something here before the window's shortcuts take them.
 
-        Esc while a landmark is dragged; while there is a crosshair its keys, Tab among them.
+        All of them while a landmark is dragged: none changes the session under the hand. While
+        there is a crosshair its keys, Tab among them.
         """
         kind = event.type()
         if kind not in (QEvent.Type.ShortcutOverride, QEvent.Type.KeyPress):
             return super().event(event)
         key, has_crosshair = event.key(), self.crosshair is not None
         if kind == QEvent.Type.ShortcutOverride:
-            ours = (Qt.Key.Key_Escape,) if self._is_dragging or has_crosshair else ()
-            if key in (*ours, *(_ENTER if has_crosshair else ())):
+            if self._is_dragging or (has_crosshair and key in (Qt.Key.Key_Escape, *_ENTER)):
                 event.accept()
                 return True
         elif has_crosshair and key in (Qt.Key.Key_Tab, Qt.Key.Key_Backtab):
@@ -307,11 +314,12 @@ class Viewport(Canvas):
         return self._press is not None and self._press.dragging
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Cancel a drag with Esc; VTK's own keys (w, s, 3, p, ...) are not for our users."""
+        """Cancel a drag with Esc or undo; VTK's own keys (w, s, 3, p, ...) are not for users."""
         key, modifiers = event.key(), event.modifiers()
-        if key == Qt.Key.Key_Escape and self._is_dragging:
-            self._press = None
-            self.drag_cancelled.emit()
+        if self._is_dragging:
+            if key == Qt.Key.Key_Escape or event.matches(QKeySequence.StandardKey.Undo):
+                self._press = None
+                self.drag_cancelled.emit()
         elif key in _ARROWS:
             across, upwards = _ARROWS[key]
             steps = 10 if modifiers & Qt.KeyboardModifier.ShiftModifier else 1
