@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import pytest
 from qtpy.QtCore import QPoint, QRect, QSettings, Qt
 from qtpy.QtTest import QTest
@@ -11,6 +13,7 @@ from tests.gui.conftest import Driver, close_window, open_window
 from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.files.file_dialogs import Answer
+from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.gui.window.main_window import MainWindow
 from pinwarp.session.session import Session
 
@@ -148,3 +151,29 @@ def test_no_penalty_is_suggested_while_a_swap_stands_in_the_list(user):
     before = user.session
     user.press(Qt.Key.Key_T)
     assert user.session == before
+
+
+def test_the_window_goes_before_what_runs_is_waited_for(user, monkeypatch):
+    """Figures of a huge mesh take seconds, and are told to stop; nobody sees the wait."""
+    user.open_sample()
+    seen, begun, wait = [], threading.Event(), threading.Event()
+
+    def endless(_inputs):
+        begun.set()
+        wait.wait(30)
+
+    monkeypatch.setattr(user.window.parts.quality._judge, "_function", endless)
+    user.window.parts.quality._judge.request(None)
+    assert begun.wait(10)
+    shut_down = LatestWins.shut_down
+
+    def recorded(job):
+        seen.append(user.window.isVisible())
+        wait.set()
+        shut_down(job)
+
+    monkeypatch.setattr(LatestWins, "shut_down", recorded)
+    user.dialogs.unsaved = Answer.DISCARD
+    user.press(Qt.Key.Key_Q, Qt.KeyboardModifier.ControlModifier)
+    assert seen
+    assert not any(seen)

@@ -92,6 +92,10 @@ class MainWindow(WindowFrame):
         for part in self.parts:
             part.remember(self._settings)
         self.take_floats_away()
+        # Closing is felt at once: what runs is told to stop, and may take seconds to hear of it.
+        self.hide()
+        for job in (self.jobs, self.long_jobs, self.stepped):
+            job.cancel()
         for signal in self._signals:
             signal.disconnect(self._on_change)
         self.jobs.shut_down()
