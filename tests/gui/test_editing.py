@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from qtpy.QtCore import QPoint, Qt
+from qtpy.QtCore import QPoint, QPointF, Qt
 from qtpy.QtTest import QTest
 
 from pinwarp.core.landmarks import LandmarkState, Role, Side
@@ -129,6 +129,34 @@ def test_the_lock_freezes_all_landmarks(user):
     assert user.session != before
 
 
+def test_no_key_changes_the_session_under_a_drag_and_undo_takes_the_drag_back(user):
+    user.open_sample()
+    viewport, name = user.window.viewports[SOURCE], "midshaft_anterior"
+    at = user.place_of(SOURCE, user.session.landmark(name).source)
+    user.drag(viewport, at, at + QPoint(0, 40))
+    before, label = user.session, user.editor.undo_label
+    at = user.place_of(SOURCE, before.landmark(name).source)
+    user.drag(viewport, at, at + QPoint(0, 30), release=False)
+    viewport.setFocus()
+    user.press(Qt.Key.Key_Delete, CTRL, viewport)
+    assert user.editor.is_previewing
+    user.press(Qt.Key.Key_Z, CTRL, viewport)
+    assert not user.editor.is_previewing
+    user.move_with(viewport, QPointF(at + QPoint(0, 50)), Qt.MouseButton.LeftButton)
+    QTest.mouseRelease(viewport, Qt.MouseButton.LeftButton, pos=at + QPoint(0, 50))
+    user.settle()
+    assert (user.session, user.editor.undo_label) == (before, label)
+    # What is deleted by anything else is gone, and the drag goes on with nothing.
+    user.drag(viewport, at, at + QPoint(0, 30), release=False)
+    user.editor.commit(edits.remove(before, [name]), f"Delete {name}")
+    user.move_with(viewport, QPointF(at + QPoint(0, 50)), Qt.MouseButton.LeftButton)
+    QTest.mouseRelease(viewport, Qt.MouseButton.LeftButton, pos=at + QPoint(0, 50))
+    user.settle()
+    assert user.editor.undo_label == f"Delete {name}"
+    user.press(Qt.Key.Key_Z, CTRL)
+    assert (user.session, user.editor.undo_label) == (before, label)
+
+
 def test_one_locked_landmark_stays_while_others_move(user):
     user.open_sample()
     viewport = user.window.viewports[SOURCE]
@@ -166,6 +194,11 @@ def test_space_accepts_the_ghost_near_where_the_landmark_was(user, side):
     ghost = user.window.parts.ghosts.at(side)
     assert ghost.name == name
     assert 0 < ghost.deviation < 30
+    # Also while the mouse rests on the landmark that was just placed.
+    user.editor.look(hovered=name)
+    hint = user.window.parts.guidance.hint.text()
+    assert hint.startswith(f"{name}: ")
+    assert hint.endswith("  Space accepts the ghost.")
     assert np.linalg.norm(np.array(ghost.position) - truth) < 8
     assert user.window.viewports[side].drawn(Ghost) == ghost
     user.press(Qt.Key.Key_Space)

@@ -181,7 +181,8 @@ class Guidance(Capability):
             return
         editor, session = self._editor, self._editor.session
         if editor.view.hovered is not None:
-            self.hint.setText(self._hover_words(editor.view.hovered))
+            # The mouse rests on what was just placed: what the key does next is said there, too.
+            self.hint.setText(f"{self._hover_words(editor.view.hovered)}{self._ghost_words()}")
             return
         missing = [side for side in Side if session.mesh(side) is None]
         if missing and session.pairs:
