@@ -119,9 +119,9 @@ class ScriptedDialogs:
         self.overwrite_questions.append((name, reason))
         return self.overwrite
 
-    def ask_import(self, session, arriving):
+    def ask_import(self, session, arriving, rulers):
         assert self.at_import, "nobody expected to be asked about an import"
-        dialog = ImportDialog(session, arriving, QApplication.activeWindow())
+        dialog = ImportDialog(session, arriving, rulers, QApplication.activeWindow())
         return dialog.choice if self._is_accepted(dialog, self.at_import.pop(0)) else None
 
     def ask_specimen(self, arriving):

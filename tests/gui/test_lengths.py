@@ -75,6 +75,24 @@ def test_bones_in_metres_are_shown_and_typed_in_millimetres_and_stay_in_metres(u
     assert model.index(0, x).data() == "12.5"
 
 
+def test_landmarks_far_off_are_asked_about_in_the_unit_that_is_shown(user, tmp_path):
+    in_metres(user)
+    path = tmp_path / "lps.csv"
+    rows = [(x.name, *x.source) for x in user.session.pairs]
+    path.write_text("name,x,y,z\n" + "".join(f"{n},{-x},{-y},{z}\n" for n, x, y, z in rows))
+    seen = []
+
+    def look(dialog):
+        seen.extend(label.text() for label in dialog.findChildren(type(dialog.outcome)))
+        seen.append(dialog.model.headerData(1, Qt.Orientation.Horizontal))
+
+    user.dialogs.at_import = [look]
+    user.window.parts.imports.bring_in(path, Side.SOURCE)
+    user.settle()
+    assert any("mm from the source mesh in the median" in words for words in seen)
+    assert "x (m)" in seen, "the file's own numbers keep their unit"
+
+
 def test_the_unit_of_lengths_is_chosen_in_the_menu_and_everything_follows(user):
     in_metres(user)
     panel, model = user.window.parts.penalty.panel, user.window.parts.table.model

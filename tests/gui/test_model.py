@@ -20,7 +20,7 @@ from pinwarp.gui.exporting.picture import PictureOrder, _painted
 from pinwarp.gui.files.file_dialogs import Answer
 from pinwarp.gui.files.lost_work_dialog import LostAnswer
 from pinwarp.gui.model import rule_tree
-from pinwarp.gui.model.body_tree import NAME, STATE
+from pinwarp.gui.model.body_tree import NAME, STATE, WORST
 from pinwarp.gui.model.model_dialogs import DryRunDialog
 from pinwarp.gui.scene.model_drawables import ModelElements
 from pinwarp.io.meshes import write_mesh
@@ -76,10 +76,14 @@ def choose_element(user, text: str) -> None:
     click_item(user, tree, item)
 
 
-def rule_in_list(user, text: str) -> str:
+def in_list(user, text: str, column: int) -> str:
     flags = Qt.MatchFlag.MatchExactly | Qt.MatchFlag.MatchRecursive
     (item,) = panel(user).rules.findItems(text, flags, rule_tree.ELEMENT)
-    return item.text(rule_tree.RULE)
+    return item.text(column)
+
+
+def rule_in_list(user, text: str) -> str:
+    return in_list(user, text, rule_tree.RULE)
 
 
 def state_of(user, name: str) -> str:
@@ -217,6 +221,13 @@ def test_a_rule_is_changed_seen_and_undone(user, leg):
     choose_element(user, "KNEE")
     assert rule_in_list(user, "KNEE") == "carried"
     assert "carried" in panel(user).details.text()
+    moved = float(in_list(user, "KNEE", rule_tree.MOVED))
+    (thigh,) = panel(user).bodies.findItems("thigh", Qt.MatchFlag.MatchExactly, NAME)
+    assert thigh.text(WORST).endswith(" mm")
+    user.trigger("lengths_cm")
+    assert float(in_list(user, "KNEE", rule_tree.MOVED)) == pytest.approx(moved / 10, abs=0.006)
+    assert "in cm" in panel(user).rules.headerItem().toolTip(rule_tree.MOVED)
+    assert thigh.text(WORST).endswith(" cm")
     choose_rule(user, "Left as it is")
     assert user.editor.rules.keep == {KNEE}
     assert rule_in_list(user, "KNEE") == "kept"

@@ -59,6 +59,8 @@ def tip_of(user, name, column):
 def test_repeats_say_what_is_imprecise_and_which_penalty_belongs_to_that(user, files, tmp_path):
     user.open_sample()
     names = [pair.name for pair in user.session.pairs]
+    # Files in millimetres are told as the menu says.
+    user.trigger("lengths_cm")
     dialog = opened(user)
     assert not dialog.use.isEnabled()
     assert not dialog.keep.isEnabled()
@@ -94,7 +96,10 @@ def test_repeats_say_what_is_imprecise_and_which_penalty_belongs_to_that(user, f
     click(dialog.use)
     penalty = user.session.settings.penalty
     assert penalty > 0
-    assert f"{penalty:.3g}" in dialog.penalty.text()
+    assert f"{penalty / 10:.3g} cm" in dialog.penalty.text()
+    assert " cm (95%: 0.0" in dialog.spread.text()
+    assert dialog.table.headerItem().text(SPREAD) == "Spread (cm)"
+    assert max(spreads) < 2
     assert not dialog.use.isEnabled()
     click(dialog.keep)
     assert "are kept with the session" in dialog.done_words.text()

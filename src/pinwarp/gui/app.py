@@ -27,6 +27,7 @@ from pinwarp.gui.window.window_dialogs import WindowDialogs
 from pinwarp.io.atomic import sweep
 from pinwarp.io.samples import sample_session
 from pinwarp.session.importing.landmarks import Arriving, ImportChoice
+from pinwarp.session.rulers import Rulers
 from pinwarp.session.session import Session
 
 # Drawing a million triangles in software takes a while; a minute means that something hangs.
@@ -51,7 +52,9 @@ class PrintedMessages(WindowDialogs):
         self.tell(title, f"{text}\n{more}")
         return len(labels) - 1
 
-    def ask_import(self, session: Session, arriving: Arriving) -> ImportChoice | None:
+    def ask_import(
+        self, session: Session, arriving: Arriving, _rulers: Rulers
+    ) -> ImportChoice | None:
         """Leave out what nobody can be asked about, and say so."""
         others = [x.name for x in arriving.landmarks if session.landmark(x.name) is None]
         way_out = (

@@ -50,10 +50,22 @@ def rulers_of(session: Session, wanted: LengthUnit = LengthUnit.FILE) -> Rulers:
     >>> rulers_of(session, LengthUnit.AUTOMATIC).session.text(0.0076912, 3)
     '7.69 mm'
     """
-    reach = _reach(session)
+    ruler = ruler_of(session.unit, _reach(session), wanted)
+    plain = Ruler(least=ruler.least)
+    source, destination = (ruler if unit_on(session, x) else plain for x in Side)
+    return Rulers(ruler, source, destination)
+
+
+def ruler_of(unit: str, reach: float, wanted: LengthUnit) -> Ruler:
+    """Return how lengths in a unit are shown, of something that is so large.
+
+    Examples
+    --------
+    >>> ruler_of("m", 0.4, LengthUnit.CM).text(0.0076912, 3)
+    '0.769 cm'
+    """
     # A round share of the size: a landmark that is placed changes no ruler.
     least = ROUNDING * 10.0 ** math.floor(math.log10(reach)) if reach > 0 else 0.0
-    unit = session.unit
     shown = unit
     if unit in METRES:
         if wanted is LengthUnit.AUTOMATIC:
@@ -63,9 +75,7 @@ def rulers_of(session: Session, wanted: LengthUnit = LengthUnit.FILE) -> Rulers:
     factor = 1.0 if shown == unit else METRES[unit] / METRES[shown]
     if factor > 1:
         factor = float(round(factor))
-    ruler = Ruler(shown, factor, least)
-    source, destination = (ruler if unit_on(session, x) else Ruler(least=least) for x in Side)
-    return Rulers(ruler, source, destination)
+    return Ruler(shown, factor, least)
 
 
 def _reach(session: Session) -> float:

@@ -23,7 +23,6 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.landmarks import Side
-from pinwarp.core.lengths import Ruler
 from pinwarp.core.words import counted, listed
 from pinwarp.gui.importing.arrival_model import ArrivalModel
 from pinwarp.gui.style import theme
@@ -42,6 +41,7 @@ from pinwarp.session.importing.landmarks import (
 )
 from pinwarp.session.importing.words import left_waiting, summary
 from pinwarp.session.mesh_units import unit_on
+from pinwarp.session.rulers import Rulers
 from pinwarp.session.session import Session
 
 _SIZE = QSize(720, 600)
@@ -60,13 +60,18 @@ class ImportDialog(QDialog):
         The session as it is.
     arriving
         The file that was read.
+    rulers
+        How distances are told; the file's own numbers keep their unit.
     parent
         The window.
     """
 
-    def __init__(self, session: Session, arriving: Arriving, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, session: Session, arriving: Arriving, rulers: Rulers, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self._session = session
+        self._rulers = rulers
         self._arriving = arriving
         what = "pairs" if arriving.side is None else f"{arriving.side.value} landmarks"
         self.setWindowTitle(f"Import {what}")
@@ -173,13 +178,12 @@ class ImportDialog(QDialog):
         """Return the ways to read the positions of a side, with how well each fits."""
         fits = self._arriving.fits[side]
         frame, column = _marked()
-        unit, mesh = unit_on(self._session, side), self._session.mesh(side)
+        ruler, mesh = self._rulers.on(side), self._session.mesh(side)
         size = mesh.diagonal if mesh is not None else 0.0
-        far = Ruler(unit).text(fits[0].distance, 3)
+        far = distance_from_mesh(fits[0].distance, size, ruler, f"the {side.value} mesh")
         column.addWidget(
             _label(
-                f"As stored they lie {far} from the {side.value} mesh in the median. "
-                "How are they meant?",
+                f"As stored they lie {far} in the median. How are they meant?",
                 bold=True,
             )
         )
@@ -197,7 +201,7 @@ class ImportDialog(QDialog):
             group.addButton(button)
             self.fits[side].append(button)
             grid.addWidget(button, row, 0)
-            far = distance_from_mesh(fit.distance, size, unit)
+            far = distance_from_mesh(fit.distance, size, ruler)
             grid.addWidget(_label(far, quiet=True), row, 1)
         group.buttonToggled.connect(lambda _button, on: self._show() if on else None)
         column.addLayout(grid)

@@ -28,7 +28,6 @@ from pinwarp.session.importing.landmarks import (
     group_words,
     imported,
 )
-from pinwarp.session.mesh_units import unit_on
 from pinwarp.session.session import Session
 
 
@@ -168,7 +167,7 @@ class LandmarkImports(Capability):
         choice: ImportChoice | None = ImportChoice(pairing)
         asked = asking or (arriving.pairing is None and brings_strangers(session, arriving))
         if asked and not plain:
-            choice = self._tasks.dialogs.ask_import(session, arriving)
+            choice = self._tasks.dialogs.ask_import(session, arriving, self._editor.rulers)
         if choice is None:
             self._tasks.said.emit("Cancelled; nothing was changed")
             return
@@ -235,10 +234,10 @@ class LandmarkImports(Capability):
     def _offer(self, side: Side, fits: tuple[Fit, ...], frame: str = "") -> None:
         """Offer to read the landmarks of a side in another way."""
         session = self._editor.committed
-        mesh, unit = session.mesh(side), unit_on(session, side)
+        mesh, ruler = session.mesh(side), self._editor.rulers.on(side)
         size = mesh.diagonal if mesh is not None else 0.0
         figures = [
-            (fit.describe(frame), distance_from_mesh(fit.distance, size, unit)) for fit in fits
+            (fit.describe(frame), distance_from_mesh(fit.distance, size, ruler)) for fit in fits
         ]
         answer = self._tasks.dialogs.ask_choice(
             "Landmarks far from their mesh",

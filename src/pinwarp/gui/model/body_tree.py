@@ -11,6 +11,7 @@ from qtpy.QtWidgets import QHeaderView, QTreeWidget, QTreeWidgetItem
 from pinwarp.gui.model import words
 from pinwarp.gui.style import theme
 from pinwarp.session.model.bench import BodyWork, Progress, progress_of
+from pinwarp.session.view import LengthUnit
 
 NAME, MESHES, POINTS, WRAPS, STATE, WORST = range(6)
 _TITLES = ("Body", "Meshes", "Points", "Wraps", "Pairs", "Worst")
@@ -57,8 +58,8 @@ class BodyTree(QTreeWidget):
         self.currentItemChanged.connect(self._on_current)
         self.itemChanged.connect(self._on_changed)
 
-    def show_bodies(self, bodies: Iterable[BodyWork], chosen: str) -> None:
-        """Show other bodies, or the same as they are now."""
+    def show_bodies(self, bodies: Iterable[BodyWork], chosen: str, wanted: LengthUnit) -> None:
+        """Show other bodies, or the same as they are now, lengths as is wanted."""
         shown = list(bodies)
         self._is_rendering = True
         paths = [one.overview.path for one in shown]
@@ -69,7 +70,7 @@ class BodyTree(QTreeWidget):
                 item.setData(NAME, _PATH, path)
                 self.addTopLevelItem(item)
         for number, one in enumerate(shown):
-            _write(self.topLevelItem(number), one)
+            _write(self.topLevelItem(number), one, wanted)
         current = self.topLevelItem(paths.index(chosen)) if chosen in paths else None
         if current is not self.currentItem():
             self.setCurrentItem(current)
@@ -102,7 +103,7 @@ class BodyTree(QTreeWidget):
             painter.drawText(room, flags, words.EMPTY)
 
 
-def _write(item: QTreeWidgetItem, one: BodyWork) -> None:
+def _write(item: QTreeWidgetItem, one: BodyWork, wanted: LengthUnit) -> None:
     progress = progress_of(one.current)
     texts = {
         NAME: one.name,
@@ -110,7 +111,7 @@ def _write(item: QTreeWidgetItem, one: BodyWork) -> None:
         POINTS: f"{words.count_of(one, *_POINTS)}",
         WRAPS: f"{words.count_of(one, 'wrap')}",
         STATE: words.state_in_words(one),
-        WORST: words.worst_in_words(one),
+        WORST: words.worst_in_words(one, wanted),
     }
     for column, text in texts.items():
         item.setText(column, text)

@@ -26,6 +26,8 @@ from pinwarp.gui.model.rule_tree import RuleTree
 from pinwarp.gui.style import theme
 from pinwarp.session.model.bench import Bench
 from pinwarp.session.model.rules import Rule
+from pinwarp.session.rulers import ruler_of
+from pinwarp.session.view import LengthUnit
 
 
 class ModelPanel(QWidget):
@@ -42,6 +44,7 @@ class ModelPanel(QWidget):
     def __init__(self, export: Action, save: Action, shown: Action) -> None:
         super().__init__()
         self._is_rendering = False
+        self._body = ""
         self.bodies = BodyTree()
         self.rules = RuleTree()
         self.title, self.problem, self.details = QLabel(), QLabel(), QLabel()
@@ -102,13 +105,17 @@ class ModelPanel(QWidget):
         self.bodies.setMinimumHeight(7 * self.fontMetrics().lineSpacing())
         self.lower.hide()
 
-    def show_bench(self, bench: Bench | None, chosen: str) -> None:
-        """Show the bodies of a model, one of them chosen."""
+    def show_bench(self, bench: Bench | None, chosen: str, wanted: LengthUnit) -> None:
+        """Show the bodies of a model, one of them chosen, and lengths as is wanted."""
         bodies = () if bench is None else tuple(bench.bodies.values())
-        self.bodies.show_bodies(bodies, chosen)
+        self.bodies.show_bodies(bodies, chosen, wanted)
+        self.rules.show_ruler(ruler_of("m", 1.0, wanted))
         self.lower.setVisible(bench is not None)
         self.rules.setVisible(bool(chosen))
-        self.rule.setEnabled(False)
+        if chosen != self._body:
+            # Until it is known what stands on the other one; saving changes nothing here.
+            self._body = chosen
+            self.rule.setEnabled(False)
         if not chosen:
             self.title.setText(words.NO_BODY)
             self.show_rows((), "", (), "")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pinwarp.core.landmarks import as_position
 from pinwarp.core.model_rows import ElementRow
@@ -54,3 +55,14 @@ def picture_of(
         lines,
         tuple(labels),
     )
+
+
+def places_of(elements: Elements, path: str) -> NDArray[np.float64]:
+    """Return the (n, 3) places of an element; of a muscle, those of its points, too."""
+    own = elements.of_path(path)
+    of_muscle = [
+        place
+        for place, at in zip(elements.points, elements.paths, strict=True)
+        if muscle_of(at) == path
+    ]
+    return np.concatenate([own, np.array(of_muscle).reshape(-1, 3)])

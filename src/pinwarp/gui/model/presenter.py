@@ -22,7 +22,7 @@ from pinwarp.gui.files.file_dialogs import FileDialogs
 from pinwarp.gui.model import words
 from pinwarp.gui.model.opened import OpenedModel
 from pinwarp.gui.model.panel import ModelPanel
-from pinwarp.gui.model.pictures import picture_of
+from pinwarp.gui.model.pictures import picture_of, places_of
 from pinwarp.gui.scene.drawables import Drawable
 from pinwarp.gui.scene.model_drawables import ModelElements
 from pinwarp.gui.tasks.file_tasks import MODEL_FILES, FileTasks
@@ -36,7 +36,7 @@ from pinwarp.session.editor import Editor
 from pinwarp.session.judging.quality import Quality
 from pinwarp.session.model.bench import Bench
 from pinwarp.session.model.body_figures import BodyFigures, body_figures
-from pinwarp.session.model.elements import Elements, muscle_of
+from pinwarp.session.model.elements import Elements
 from pinwarp.session.model.rules import Rule, choices, rule_of, with_rule
 from pinwarp.session.session import Session
 from pinwarp.session.warp.result import WarpResult
@@ -157,6 +157,7 @@ class ModelPresenter(Capability):
         self._opened.changed.connect(self._on_opened)
         self._editor.session_changed.connect(self._on_session)
         self._editor.saved.connect(self._show_bodies)
+        self._editor.rulers_changed.connect(self._show_bodies)
         self._warps.result_changed.connect(self._on_result)
         self._quality.quality_changed.connect(self._on_quality)
 
@@ -164,6 +165,7 @@ class ModelPresenter(Capability):
         """Let go of the worker, the warps and the editor."""
         self._quality.quality_changed.disconnect(self._on_quality)
         self._warps.result_changed.disconnect(self._on_result)
+        self._editor.rulers_changed.disconnect(self._show_bodies)
         self._editor.saved.disconnect(self._show_bodies)
         self._editor.session_changed.disconnect(self._on_session)
         self._opened.changed.disconnect(self._on_opened)
@@ -287,7 +289,7 @@ class ModelPresenter(Capability):
         for side, elements in sides.items():
             if elements is None:
                 continue
-            places = np.concatenate([_places_of(elements, path) for path in chosen])
+            places = np.concatenate([places_of(elements, path) for path in chosen])
             if len(places):
                 targets[side] = places
         if targets:
@@ -382,19 +384,9 @@ class ModelPresenter(Capability):
     # What is shown
 
     def _show_bodies(self) -> None:
-        self.panel.show_bench(self._opened.bench, self._opened.chosen)
+        opened, lengths = self._opened, self._editor.view.lengths
+        self.panel.show_bench(opened.bench, opened.chosen, lengths)
 
     def _renew_actions(self) -> None:
         for action in self.actions:
             action.renew()
-
-
-def _places_of(elements: Elements, path: str) -> np.ndarray:
-    """Return the places of an element; of a muscle, those of its points, too."""
-    own = elements.of_path(path)
-    of_muscle = [
-        place
-        for place, at in zip(elements.points, elements.paths, strict=True)
-        if muscle_of(at) == path
-    ]
-    return np.concatenate([own, np.array(of_muscle).reshape(-1, 3)])

@@ -9,6 +9,7 @@ from qtpy.QtCore import Qt, Signal
 from qtpy.QtGui import QBrush
 from qtpy.QtWidgets import QAbstractItemView, QHeaderView, QTreeWidget, QTreeWidgetItem
 
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.model_rows import ElementRow
 from pinwarp.gui.model import words
 from pinwarp.gui.style import theme
@@ -18,8 +19,8 @@ ELEMENT, RULE, MOVED, PLUS_MINUS, FLAG = range(5)
 _TITLES = ("Element", "Rule", "Moved", "±", "")
 _TIPS = {
     RULE: "What becomes of it: carried, turned with the bone, or kept as it is",
-    MOVED: "How far the bone moves it, in mm",
-    PLUS_MINUS: "How far that may be off, in mm: the standard deviation of one coordinate",
+    MOVED: "How far the bone moves it, in {unit}",
+    PLUS_MINUS: "How far that may be off, in {unit}: the standard deviation of one coordinate",
     FLAG: "Marked where there is something to look at",
 }
 _WIDEST = {RULE: "made anew ", MOVED: "123.4 ", PLUS_MINUS: "12.3 ", FLAG: "12 "}
@@ -42,6 +43,8 @@ class RuleTree(QTreeWidget):
         self._rows: dict[Key, ElementRow] = {}
         self._items: dict[Key, QTreeWidgetItem] = {}
         self._only_flagged = False
+        # Models are in metres.
+        self._ruler = Ruler("mm", 1000.0)
         self.setHeaderLabels(_TITLES)
         self.setUniformRowHeights(True)
         self.setAlternatingRowColors(True)
@@ -55,7 +58,7 @@ class RuleTree(QTreeWidget):
         for column, widest in _WIDEST.items():
             header.setSectionResizeMode(column, QHeaderView.ResizeMode.Interactive)
             header.resizeSection(column, self.fontMetrics().horizontalAdvance(widest) + 12)
-            head.setToolTip(column, _TIPS[column])
+            head.setToolTip(column, _TIPS[column].format(unit=self._ruler.unit))
             head.setTextAlignment(column, _RIGHT if column > RULE else Qt.AlignmentFlag.AlignLeft)
         self.itemSelectionChanged.connect(self.chosen)
 
@@ -81,12 +84,22 @@ class RuleTree(QTreeWidget):
             self.chosen.emit()
         self._rows = new
         for key, row in new.items():
-            _write(self._items[key], row)
+            _write(self._items[key], row, self._ruler)
         for number in range(self.topLevelItemCount()):
             item = self.topLevelItem(number)
             flags = sum(bool(self._rows[_key_of(one)].flag) for one in _below(item) if _key_of(one))
             _flag(item, f"{flags}" if flags else "")
         self.show_only_flagged(self._only_flagged)
+
+    def show_ruler(self, ruler: Ruler) -> None:
+        """Tell lengths otherwise."""
+        if ruler == self._ruler:
+            return
+        self._ruler = ruler
+        for column, tip in _TIPS.items():
+            self.headerItem().setToolTip(column, tip.format(unit=ruler.unit))
+        for key, row in self._rows.items():
+            _write(self._items[key], row, ruler)
 
     def show_only_flagged(self, only: bool) -> None:
         """Leave out what asks for no look, or show everything."""
@@ -137,11 +150,11 @@ def _count(group: str, rows: Sequence[ElementRow]) -> int:
     return len({muscle_of(row.path) or row.path for row in rows})
 
 
-def _write(item: QTreeWidgetItem, row: ElementRow) -> None:
+def _write(item: QTreeWidgetItem, row: ElementRow, ruler: Ruler) -> None:
     for column, text in (
         (RULE, words.outcome_in_words(row)),
-        (MOVED, words.millimetres(row.moved)),
-        (PLUS_MINUS, words.millimetres(row.plus_minus)),
+        (MOVED, words.length_in_words(row.moved, ruler)),
+        (PLUS_MINUS, words.length_in_words(row.plus_minus, ruler)),
     ):
         item.setText(column, text)
         item.setTextAlignment(column, _RIGHT if column > RULE else Qt.AlignmentFlag.AlignLeft)

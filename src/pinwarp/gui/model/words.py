@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 
+from pinwarp.core.lengths import Ruler
 from pinwarp.core.model_rows import ElementRow
 from pinwarp.session.model.bench import BodyWork, Progress, progress_of
 from pinwarp.session.model.elements import muscle_of
 from pinwarp.session.model.rules import Rule
+from pinwarp.session.rulers import rulers_of
+from pinwarp.session.view import LengthUnit
 
 EMPTY = (
     "A generic model of OpenSim becomes a subject's: its bones are warped one after the other, "
@@ -72,9 +75,10 @@ def outcome_in_words(row: ElementRow) -> str:
     return "turned" if "turned with" in row.words else "carried"
 
 
-def millimetres(metres: float) -> str:
-    """Return a length of the model as text; a dash where it is not known."""
-    return "–" if math.isnan(metres) else f"{1e3 * metres:.1f}"
+def length_in_words(metres: float, ruler: Ruler) -> str:
+    """Return a length of the model as text, to a tenth of a millimetre; a dash if not known."""
+    decimals = 4 - round(math.log10(ruler.factor))
+    return "–" if math.isnan(metres) else f"{ruler.shown(metres):.{decimals}f}"
 
 
 def meshes_in_words(one: BodyWork) -> str:
@@ -97,9 +101,9 @@ def state_in_words(one: BodyWork) -> str:
     return f"{progress.value}*" if one.is_unsaved and progress is not Progress.NONE else progress
 
 
-def worst_in_words(one: BodyWork) -> str:
+def worst_in_words(one: BodyWork, wanted: LengthUnit) -> str:
     """Return the worst leave-one-out error of a body."""
     session = one.current
     if session is None or math.isnan(one.worst):
         return "–"
-    return f"{1e3 * one.worst:.1f} mm" if session.unit == "m" else f"{one.worst:.1f} {session.unit}"
+    return rulers_of(session, wanted).session.text(one.worst, 3)

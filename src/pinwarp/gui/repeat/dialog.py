@@ -26,7 +26,7 @@ from qtpy.QtWidgets import (
 )
 
 from pinwarp.core.landmarks import Side
-from pinwarp.core.lengths import format_number
+from pinwarp.core.lengths import Ruler
 from pinwarp.gui.repeat.spread_table import SpreadTable
 from pinwarp.gui.style import theme
 from pinwarp.gui.tasks.dropping import dropped_files
@@ -35,6 +35,7 @@ from pinwarp.session.repeat.measuring import Asked, Measured
 
 _SIZE = QSize(760, 640)
 _FILES, _NOTES = 4, 5
+_PLAIN = Ruler()
 INVITATION = "Add the files of a set that was digitised two or more times, or drop them here."
 
 
@@ -49,9 +50,8 @@ class PrecisionDialog(QDialog):
     penalty_wanted = Signal()
     keep_wanted = Signal()
 
-    def __init__(self, unit: str, parent: QWidget) -> None:
+    def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
-        self._unit = unit
         self._asked = Asked()
         self.setWindowTitle("Landmark Precision")
         self.setWindowModality(Qt.WindowModality.WindowModal)
@@ -209,26 +209,33 @@ class PrecisionDialog(QDialog):
 
     # What came of it
 
-    def show_measured(self, found: Measured) -> None:
-        """Show what repeats say, or why they say nothing."""
-        repeats, unit = found.repeats, self._unit
+    def show_measured(self, found: Measured, ruler: Ruler = _PLAIN, own: Ruler = _PLAIN) -> None:
+        """Show what repeats say, or why they say nothing.
+
+        Parameters
+        ----------
+        found
+            What was measured.
+        ruler, own
+            How the lengths of the repeats are told, and those of the session.
+        """
+        repeats = found.repeats
         if not found.asked.paths:
             found = replace(found, problem=INVITATION)
         tick = f"Tick “{self.adapt.text()}” for that." if found.other_frame else ""
         told = (f"{found.problem} {tick}".rstrip(), *found.notes)
         self.notes.setPlainText("\n".join(filter(None, told)))
         self.notes.setVisible(bool(self.notes.toPlainText()))
-        self.table.show_repeats(repeats, (repeats.unit if repeats else "") or unit)
+        self.table.show_repeats(repeats, ruler)
         self.spread.setText("–")
         self.axes.setText("–")
         self.penalty.setText("–")
         if repeats is not None:
-            unit = repeats.unit or unit
             figures = repeats.figures
-            low, high = (_length(x, "", 3) for x in figures.interval)
-            one = _length(math.sqrt(figures.variance), unit, 3)
+            low, high = (ruler.number(x, 3) for x in figures.interval)
+            one = ruler.text(math.sqrt(figures.variance), 3)
             self.spread.setText(
-                f"{_length(figures.spread, unit, 3)} (95%: {low} to {high}); of one "
+                f"{ruler.text(figures.spread, 3)} (95%: {low} to {high}); of one "
                 f"coordinate {one}, {figures.freedom} degrees of freedom"
             )
             shares = figures.axis_variances / figures.axis_variances.sum()
@@ -236,7 +243,7 @@ class PrecisionDialog(QDialog):
                 ", ".join(f"{axis} {share:.0%}" for axis, share in zip("xyz", shares, strict=True))
             )
         if found.penalty is not None:
-            self.penalty.setText(_penalty_words(found.penalty, self._unit))
+            self.penalty.setText(_penalty_words(found.penalty, own))
         self._renew_remove()
 
     def say(self, words: str) -> None:
@@ -249,11 +256,6 @@ class PrecisionDialog(QDialog):
         self.keep.setEnabled(keep)
 
 
-def _penalty_words(found: PenaltyOfNoise, unit: str) -> str:
-    low, high = (_length(x, "", 3) for x in (found.low, found.high))
-    penalty = _length(found.penalty, unit, 3)
-    return f"{penalty} ({low} to {high}). {found.words}"
-
-
-def _length(value: float, unit: str, digits: int) -> str:
-    return "affine" if math.isinf(value) else f"{format_number(value, digits)} {unit}".rstrip()
+def _penalty_words(found: PenaltyOfNoise, ruler: Ruler) -> str:
+    low, high = (ruler.number(x, 3) for x in (found.low, found.high))
+    return f"{ruler.text(found.penalty, 3)} ({low} to {high}). {found.words}"

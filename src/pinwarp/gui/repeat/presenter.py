@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
 from qtpy.QtWidgets import QWidget
 
+from pinwarp.core.lengths import Ruler
 from pinwarp.gui.capability.action import Action
 from pinwarp.gui.capability.capability import Capability
 from pinwarp.gui.repeat.dialog import PrecisionDialog
@@ -11,9 +13,11 @@ from pinwarp.gui.tasks.dialogs import Dialogs
 from pinwarp.gui.tasks.file_tasks import LANDMARK_FILES, FileTasks
 from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.session.editor import Editor
+from pinwarp.session.repeat.comparing import Repeats
 from pinwarp.session.repeat.level import with_penalty, with_spreads_of, without_spreads
 from pinwarp.session.repeat.measuring import Asked, Measured, measured
 from pinwarp.session.repeat.spreads import has_spreads
+from pinwarp.session.rulers import ruler_of
 from pinwarp.session.session import Session
 
 
@@ -69,7 +73,7 @@ class LandmarkPrecision(Capability):
 
     def ask(self) -> None:
         """Open the dialog."""
-        dialog = PrecisionDialog(self._editor.committed.unit, self._window)
+        dialog = PrecisionDialog(self._window)
         dialog.asked_for.connect(self._on_asked)
         dialog.files_wanted.connect(self._on_files)
         dialog.penalty_wanted.connect(self._use_penalty)
@@ -101,8 +105,16 @@ class LandmarkPrecision(Capability):
         if self.dialog is None or found.asked is not self._asked:
             return
         self._measured = found
-        self.dialog.show_measured(found)
+        self.dialog.show_measured(found, self._ruler_of(found.repeats), self._editor.rulers.session)
         self._renew()
+
+    def _ruler_of(self, repeats: Repeats | None) -> Ruler:
+        """Return how the lengths of repeats are told, which may be in a unit of their own."""
+        session, view = self._editor.committed, self._editor.view
+        if repeats is None or repeats.unit in ("", session.unit):
+            return self._editor.rulers.session
+        reach = float(np.nanmax(np.abs(repeats.places), initial=0.0))
+        return ruler_of(repeats.unit, reach, view.lengths)
 
     @staticmethod
     def _on_failure(error: Exception) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 from qtpy.QtCore import Qt
 from qtpy.QtWidgets import QHeaderView, QTreeWidget, QTreeWidgetItem
 
-from pinwarp.core.lengths import format_number
+from pinwarp.core.lengths import Ruler
 from pinwarp.gui.style import theme
 from pinwarp.gui.style.icons import icon
 from pinwarp.session.naming import natural
@@ -47,7 +47,7 @@ class SpreadTable(QTreeWidget):
         self.setUniformRowHeights(True)
         self.setAlternatingRowColors(True)
         self.setAccessibleName("Spread of every landmark")
-        self.show_repeats(None, "")
+        self.show_repeats(None, Ruler())
         self.setSortingEnabled(True)
         self.sortByColumn(SPREAD, Qt.SortOrder.DescendingOrder)
         header = self.header()
@@ -58,8 +58,9 @@ class SpreadTable(QTreeWidget):
             # Room for the arrow that says by what is sorted.
             header.resizeSection(column, self.fontMetrics().horizontalAdvance(widest) + 30)
 
-    def show_repeats(self, repeats: Repeats | None, unit: str) -> None:
+    def show_repeats(self, repeats: Repeats | None, ruler: Ruler) -> None:
         """Show the landmarks of some repeats, or none."""
+        unit = ruler.unit
         self.setHeaderLabels(
             ["Landmark", "Repeats", f"Spread ({unit})" if unit else "Spread", "x", "y", "z"]
         )
@@ -78,7 +79,7 @@ class SpreadTable(QTreeWidget):
             count, spread = int(figures.counts[row]), float(figures.spreads[row])
             _write(item, COUNT, str(count), count)
             known = not math.isnan(spread)
-            _write(item, SPREAD, format_number(spread) if known else "", spread if known else -1.0)
+            _write(item, SPREAD, ruler.number(spread) if known else "", spread if known else -1.0)
             for column, share in zip((X, Y, Z), figures.shares[row].tolist(), strict=True):
                 _write(
                     item,
