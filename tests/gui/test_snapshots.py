@@ -47,6 +47,11 @@ def test_the_strip_is_there_only_when_there_are_snapshots(user, strip):
     click(user, strip.tiles[0].close_button)
     assert not strip.isVisible()
     assert user.window.viewports[Side.DESTINATION].height() == height
+    # Another session has none of the one before.
+    user.press(Qt.Key.Key_P)
+    user.press(Qt.Key.Key_N, Qt.KeyboardModifier.ControlModifier)
+    assert not strip.isVisible()
+    assert user.window.parts.snapshots.snapshots == ()
 
 
 def test_a_snapshot_shows_the_bones_with_penalty_and_figures(user, strip):

@@ -42,6 +42,8 @@ class Editor:
 
     Signals are in the past tense: ``session_changed`` (also while previewing a drag),
     ``selection_changed``, ``view_changed`` and ``saved`` (the file or the unsaved mark changed).
+    ``taken_up`` comes before the change to other work: what was kept of the one before is of no
+    more use.
     ``rulers_changed`` comes before the change of session or view that lengths are shown otherwise
     for.
 
@@ -61,6 +63,7 @@ class Editor:
     selection_changed = isolated(Selection)
     view_changed = isolated(ViewState)
     saved = isolated()
+    taken_up = isolated()
     rulers_changed = isolated(Rulers)
 
     def __init__(self, session: Session | None = None) -> None:
@@ -188,6 +191,7 @@ class Editor:
         self._history = work.history
         self._preview = None
         self.path, self.file_sha256 = work.path, work.file_sha256
+        self.taken_up.emit()
         self._announce()
         self.saved.emit()
 

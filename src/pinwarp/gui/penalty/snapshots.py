@@ -99,12 +99,14 @@ class Snapshots(Capability):
         strip.settings_requested.connect(self._on_settings)
         strip.removal_requested.connect(self._on_removal)
         editor.session_changed.connect(self._on_session)
+        editor.taken_up.connect(self.clear)
         warps.result_changed.connect(self._on_result)
         self._show()
 
     def shut_down(self) -> None:
         """Let go of the editor and the warps."""
         self._preview.shut_down()
+        self._editor.taken_up.disconnect(self.clear)
         self._editor.session_changed.disconnect(self._on_session)
         self._warps.result_changed.disconnect(self._on_result)
 
