@@ -12,6 +12,7 @@ from qtpy.QtCore import QPoint, Qt, QTimer
 from qtpy.QtTest import QTest
 from tests.gui.conftest import Driver, ScriptedDialogs, close_window, open_window
 from tests.gui.test_files import drop
+from tests.gui.test_themes import greatest_contrast, pixels
 from tests.osim_models import POSE, copied_model, edited_model, paired, subject
 
 from pinwarp.core.landmarks import Side
@@ -20,7 +21,7 @@ from pinwarp.gui.exporting.picture import PictureOrder, _painted
 from pinwarp.gui.files.file_dialogs import Answer
 from pinwarp.gui.files.lost_work_dialog import LostAnswer
 from pinwarp.gui.model import rule_tree
-from pinwarp.gui.model.body_tree import NAME, STATE, WORST
+from pinwarp.gui.model.body_tree import NAME, STATE, WORST, WRAPS
 from pinwarp.gui.model.model_dialogs import DryRunDialog
 from pinwarp.gui.scene.model_drawables import ModelElements
 from pinwarp.io.meshes import write_mesh
@@ -158,6 +159,27 @@ def test_a_body_that_is_chosen_becomes_the_source_with_all_that_stands_on_it(use
     assert user.window.viewports[SOURCE].layer.markers == ()
     assert user.window.parts.table.model.rowCount() == 0
     assert "Pair the bone" in panel(user).details.text()
+
+
+def test_in_a_small_window_the_names_of_bodies_are_read_whole(user, leg):
+    open_model(user, leg)
+    tree = panel(user).bodies
+    user.window.resize(1280, 800)
+    user.settle()
+    assert not tree.isColumnHidden(WRAPS)
+    user.window.resize(1024, 580)
+    user.settle()
+    assert user.window.width() <= 1024
+    words = tree.fontMetrics().horizontalAdvance("calcaneus_r")
+    assert tree.columnWidth(NAME) >= words + 30
+    assert tree.horizontalScrollBar().maximum() == 0
+    assert not tree.isColumnHidden(WORST)
+    # Why there is no curve is read whole, too.
+    plot = user.window.parts.penalty.panel.plot
+    picture = pixels(plot)
+    edges = np.concatenate([picture[:3].reshape(-1, 3), picture[-3:].reshape(-1, 3)])
+    assert greatest_contrast(edges) < 2, "no words are cut at the upper or lower edge"
+    assert greatest_contrast(picture) > 4
 
 
 def test_a_model_is_opened_by_dropping_it(user, leg):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from qtpy.QtCore import Qt, Signal
-from qtpy.QtGui import QBrush, QPainter, QPaintEvent
+from qtpy.QtGui import QBrush, QPainter, QPaintEvent, QResizeEvent
 from qtpy.QtWidgets import QHeaderView, QTreeWidget, QTreeWidgetItem
 
 from pinwarp.gui.model import words
@@ -25,6 +25,8 @@ _TIPS = {
     WORST: "The largest leave-one-out error of its landmarks",
 }
 _WIDEST = {MESHES: "missing", POINTS: "Points", WRAPS: "Wraps", STATE: "started*", WORST: "12.3 mm"}
+# A usual name of a body, with its box; and what gives way to names in a small window, in turn.
+_NAME, _GIVING_WAY = "calcaneus_r", (WRAPS, POINTS, MESHES)
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 _PATH = Qt.ItemDataRole.UserRole
 _POINTS = ("path point", "conditional", "moving", "marker", "station")
@@ -47,6 +49,7 @@ class BodyTree(QTreeWidget):
         header, head = self.header(), self.headerItem()
         header.setStretchLastSection(False)
         header.setMinimumSectionSize(24)
+        self._widths: dict[int, int] = {}
         header.setSectionResizeMode(NAME, QHeaderView.ResizeMode.Stretch)
         for column, tip in _TIPS.items():
             head.setToolTip(column, tip)
@@ -54,7 +57,8 @@ class BodyTree(QTreeWidget):
                 head.setTextAlignment(column, _RIGHT)
                 header.setSectionResizeMode(column, QHeaderView.ResizeMode.Interactive)
                 widest = max(_WIDEST[column], _TITLES[column], key=len)
-                header.resizeSection(column, self.fontMetrics().horizontalAdvance(widest) + 14)
+                self._widths[column] = self.fontMetrics().horizontalAdvance(widest) + 14
+                header.resizeSection(column, self._widths[column])
         self.currentItemChanged.connect(self._on_current)
         self.itemChanged.connect(self._on_changed)
 
@@ -90,6 +94,16 @@ class BodyTree(QTreeWidget):
         if not self._is_rendering and column == NAME:
             on = item.checkState(NAME) == Qt.CheckState.Checked
             self.body_enabled.emit(item.data(NAME, _PATH), on)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Leave out what is less worth than the names where there is no room for both."""
+        super().resizeEvent(event)
+        spare = self.viewport().width() - sum(self._widths.values())
+        wanted = self.fontMetrics().horizontalAdvance(_NAME) + 34
+        for column in _GIVING_WAY:
+            is_hidden = spare < wanted
+            spare += self._widths[column] * is_hidden
+            self.setColumnHidden(column, is_hidden)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Say how to begin where there is nothing to show."""

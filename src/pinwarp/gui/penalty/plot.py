@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from qtpy.QtCore import QEvent, QLineF, QPoint, QPointF, QRectF, QSize, Qt, Signal
+from qtpy.QtCore import QEvent, QLineF, QMarginsF, QPoint, QPointF, QRectF, QSize, Qt, Signal
 from qtpy.QtGui import (
     QColor,
     QFont,
@@ -205,15 +205,23 @@ class PenaltyPlot(QWidget):
 
     # Painting
 
+    def _paint_hint(self, painter: QPainter, area: QRectF) -> None:
+        """Write why there is no curve, where axes would stand if it needs the room."""
+        border = QMarginsF(12, 0, 12, 0)
+        needed = painter.boundingRect(area - border, _CENTRED, self._hint)
+        if needed.height() > area.height():
+            area = QRectF(0, 0, self.width(), self.height())
+        painter.fillRect(area, self.palette().color(QPalette.ColorRole.Base))
+        painter.setPen(self._quiet)
+        painter.drawText(area - border, _CENTRED, self._hint)
+
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Paint axis, curves, the present penalty, the suggestion and what is hovered."""
         with QPainter(self) as painter:
             painter.setRenderHint(QPainter.RenderHint.Antialiasing)
             area = self._area
             if self._plotted is None:
-                painter.fillRect(area, self.palette().color(QPalette.ColorRole.Base))
-                painter.setPen(self._quiet)
-                painter.drawText(area.adjusted(12, 0, -12, 0), _CENTRED, self._hint)
+                self._paint_hint(painter, area)
             else:
                 painter.drawPixmap(0, 0, self._resting_picture(area, self._plotted))
                 self._paint_present(painter, area)
