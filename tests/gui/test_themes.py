@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from qtpy.QtGui import QColor, QImage, QPainter, QPalette
 from qtpy.QtTest import QTest
 from qtpy.QtWidgets import (
     QAbstractButton,
+    QApplication,
     QCheckBox,
     QDockWidget,
     QLabel,
@@ -27,6 +29,7 @@ from qtpy.QtWidgets import (
     QWidget,
 )
 
+from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import LandmarkState, Side
 from pinwarp.gui.painted.arrows import paint_arrow
 from pinwarp.gui.painted.markers import (
@@ -46,6 +49,7 @@ from pinwarp.gui.style.theme import (
     SOURCE_COLOUR,
     backgrounds,
 )
+from pinwarp.gui.table.columns import finding_icon
 from pinwarp.session.model.elements import OutlineKind
 
 # Of text, and of what is pressed or moved, against what is around (WCAG 2.2, 1.4.3 and 1.4.11).
@@ -297,6 +301,17 @@ def test_the_handle_of_every_slider_stands_out_from_its_groove(sample):
         values = luminances(row[max(0, handle.left() - 2) : handle.right() + 3])
         around = luminances(pixels(slider)[0, 0])
         assert max(contrast(value, around) for value in values) >= VISIBLE, slider.accessibleName()
+
+
+@pytest.mark.parametrize("kind", [FindingKind.SWAPPED, FindingKind.DISPLACED, FindingKind.ISOLATED])
+def test_the_signs_of_what_was_found_are_seen_in_the_list_and_in_the_table(theme, kind):
+    around = QApplication.palette().color(QPalette.ColorRole.Base)
+    finding = Mock(kind=kind, is_grave=kind is FindingKind.SWAPPED)
+    image = QImage(20, 20, QImage.Format.Format_RGB888)
+    image.fill(around)
+    with QPainter(image) as painter:
+        finding_icon([Mock(finding=finding)]).paint(painter, image.rect())
+    assert greatest_contrast(colours_of(image)) >= VISIBLE
 
 
 @pytest.mark.parametrize("share", [0, 50, 100])

@@ -235,9 +235,10 @@ def finding_icon(findings: Sequence[NamedFinding]) -> QIcon:
     """Return the sign of the gravest of some findings."""
     if any(found.finding.is_grave for found in findings):
         return icon("warning", theme.WARNING_COLOUR)
+    quiet = theme.quiet_text_colour().name()
     if any(found.finding.kind is not FindingKind.ISOLATED for found in findings):
-        return icon("look", theme.QUIET_INK)
-    return icon("isolated", theme.QUIET_INK)
+        return icon("look", quiet)
+    return icon("isolated", quiet)
 
 
 def _side_column(side: Side) -> Column:
