@@ -543,9 +543,8 @@ def test_a_mesh_in_another_unit_can_be_scaled_and_the_session_remembers(user, sm
     open_apart(user, small_bone)
     ((title, text, _, labels),) = user.dialogs.choice_questions
     assert title == "Different units?"
-    assert (
-        "destination is 924 times as large as the source: 415.5 and 0.4496 across, in the" in text
-    )
+    assert "destination is 924 times as large as the source: 415.5 and 0.4496 across" in text
+    assert "in their own numbers" in text
     assert labels == [
         "Scale the Destination by 1/1,000",
         "Scale the Source by 1,000",

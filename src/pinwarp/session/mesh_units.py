@@ -117,8 +117,8 @@ def size_words(session: Session) -> tuple[str, ...]:
     larger = Side.DESTINATION if ratio > 1 else Side.SOURCE
     words = [
         f"The {larger.value} is {max(sizes) / min(sizes):,.0f} times as large as the "
-        f"{larger.other.value}: {max(sizes):.4g} and {min(sizes):.4g} across, in the "
-        "numbers of their files."
+        f"{larger.other.value}: {max(sizes):.4g} and {min(sizes):.4g} across, in "
+        "their own numbers."
     ]
     if factor is not None:
         smaller = _SMALLER[max(factor, 1 / factor)]
