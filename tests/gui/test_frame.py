@@ -76,6 +76,30 @@ def test_names_have_the_width_that_figures_leave_them_and_all_is_seen_in_a_small
     assert table.horizontalScrollBar().maximum() == 0
 
 
+def test_panels_get_their_width_back_when_the_window_grows_again(user):
+    window = user.window
+    landmarks = next(x for x in window.findChildren(QDockWidget) if x.objectName() == "landmarks")
+    width = landmarks.width()
+    for wanted in (width, width + 90):
+        # By the border, as somebody drags it.
+        edge = landmarks.mapTo(window, QPoint(-3, 200))
+        end = edge - QPoint(wanted - landmarks.width(), 0)
+        handle = window.windowHandle()
+        QTest.mouseMove(handle, edge)
+        QTest.mousePress(handle, Qt.MouseButton.LeftButton, pos=edge)
+        QTest.mouseMove(handle, end)
+        user.settle()
+        QTest.mouseRelease(handle, Qt.MouseButton.LeftButton, pos=end)
+        user.settle()
+        assert landmarks.width() == pytest.approx(wanted, abs=3)
+        window.resize(1024, 580)
+        user.settle()
+        assert landmarks.width() < width
+        window.resize(1280, 800)
+        user.settle()
+        assert landmarks.width() == pytest.approx(wanted, abs=3)
+
+
 def test_new_and_close_leave_an_empty_window_and_ask_about_unsaved_work(user):
     user.open_sample()
     user.press(Qt.Key.Key_W, Qt.KeyboardModifier.ControlModifier)

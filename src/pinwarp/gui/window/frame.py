@@ -35,6 +35,7 @@ from pinwarp.gui.views.scenes import Scenes
 from pinwarp.gui.views.viewport import Viewport
 from pinwarp.gui.window.faults import Faults
 from pinwarp.gui.window.menus import fill, make_menus, shortcut_groups
+from pinwarp.gui.window.right_edge import RightEdge
 from pinwarp.gui.window.shortcut_overlay import ShortcutOverlay
 
 # How long a message stands in the status bar.
@@ -176,6 +177,7 @@ class WindowFrame(QMainWindow):
         self.setTabPosition(RIGHT, QTabWidget.TabPosition.North)
         self._front = right[0]
         self._right = right
+        self._right_edge = RightEdge(self, right)
         self._front.raise_()
         # The table keeps the whole height of the right edge, unless large text needs the width.
         below = [panel.widget for panel in panels if panel.area != RIGHT]
@@ -194,7 +196,7 @@ class WindowFrame(QMainWindow):
         words = self.fontMetrics()
         # A tab in front has a pixel on either side for its frame.
         tabs = sum(words.horizontalAdvance(x.windowTitle()) + beside + 2 for x in self._right)
-        self.resizeDocks([self._front], [max(RIGHT_WIDTH, tabs)], Qt.Orientation.Horizontal)
+        self._right_edge.want(max(RIGHT_WIDTH, tabs))
 
     def _fit_docks(self) -> None:
         for dock in self._fitted:
@@ -263,8 +265,8 @@ class WindowFrame(QMainWindow):
         """Put docks and window where they stood when the layout was saved."""
         for key, restore in (("geometry", self.restoreGeometry), ("layout", self.restoreState)):
             stored = settings.value(key)
-            if isinstance(stored, QByteArray):
-                restore(stored)
+            if isinstance(stored, QByteArray) and restore(stored):
+                self._right_edge.want(None)
         # Snapshots that stood there are not remembered.
         self._fit_docks()
 
