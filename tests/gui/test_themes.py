@@ -17,6 +17,7 @@ from qtpy.QtWidgets import (
     QCheckBox,
     QDockWidget,
     QLabel,
+    QLineEdit,
     QProgressBar,
     QPushButton,
     QRadioButton,
@@ -345,6 +346,23 @@ def test_ticks_and_dots_are_seen_and_so_are_empty_boxes(sample, kind):
     assert max(differences) >= VISIBLE
     button.setParent(None)
     button.deleteLater()
+
+
+@pytest.mark.parametrize("kind", [QPushButton, QToolButton, QLineEdit, QRadioButton, QCheckBox])
+def test_what_cannot_be_used_is_paler_than_what_can(sample, kind):
+    widget = kind(sample.window)
+    widget.setText("Words")
+    widget.setGeometry(100, 300, 120, 30)
+    widget.setAutoFillBackground(True)
+    widget.show()
+    measured = []
+    for enabled in (True, False):
+        widget.setEnabled(enabled)
+        measured.append(greatest_contrast(pixels(widget)[6:-6, 22:-6]))
+    assert measured[0] >= READABLE
+    assert 1.5 < measured[1] < 0.6 * measured[0]
+    widget.setParent(None)
+    widget.deleteLater()
 
 
 @pytest.mark.parametrize("kind", [QToolButton, QPushButton])

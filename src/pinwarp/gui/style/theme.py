@@ -72,6 +72,8 @@ DIVERGING_COLOURS = (
 )
 
 SPACE = 8
+# How far the words of what is disabled fade into what is around.
+DISABLED = 0.55
 
 
 def backgrounds(dark: bool) -> tuple[str, str]:
@@ -93,6 +95,27 @@ def is_dark() -> bool:
     """Whether the window is light on dark."""
     colour = QGuiApplication.palette().color(QPalette.ColorRole.Window)
     return colour.lightness() < 128
+
+
+def with_disabled_apart(palette: QPalette) -> QPalette:
+    """Return a palette in which what is disabled is paler than what is not.
+
+    Plain palettes have one colour for both; others are returned as they are.
+    """
+    result, groups, roles = QPalette(palette), QPalette.ColorGroup, QPalette.ColorRole
+    for words, around in (
+        (roles.WindowText, roles.Window),
+        (roles.Text, roles.Base),
+        (roles.ButtonText, roles.Button),
+    ):
+        ink, paper = (palette.color(groups.Active, role) for role in (words, around))
+        if palette.color(groups.Disabled, words) == ink:
+            mixed = (
+                (1 - DISABLED) * one + DISABLED * other
+                for one, other in zip(ink.getRgbF()[:3], paper.getRgbF()[:3], strict=True)
+            )
+            result.setColor(groups.Disabled, words, QColor.fromRgbF(*mixed))
+    return result
 
 
 def text_colour() -> QColor:

@@ -28,6 +28,7 @@ from pinwarp.gui.capability.capability import RIGHT, Capability, Panel
 from pinwarp.gui.drawn.surfaces import Surfaces
 from pinwarp.gui.style.icons import icon
 from pinwarp.gui.style.sheet import window_sheet
+from pinwarp.gui.style.theme import with_disabled_apart
 from pinwarp.gui.tasks.jobs import SlowJob
 from pinwarp.gui.tasks.progress import JobProgress
 from pinwarp.gui.tasks.stepped_job import SteppedJob
@@ -226,6 +227,10 @@ class WindowFrame(QMainWindow):
             self._dress()
 
     def _dress(self) -> None:
+        palette = QApplication.palette()
+        if (apart := with_disabled_apart(palette)) != palette:
+            # Menus and dialogs, too.
+            QApplication.setPalette(apart)
         sheet = window_sheet(QApplication.palette())
         # A sheet changes palettes, too.
         if sheet != self.styleSheet():
