@@ -91,6 +91,7 @@ def test_space_confirms_one_after_the_other_and_turns_to_what_is_hidden(user):
         name, before = suggested(user)[0], len(suggested(user))
         place = user.session.landmark(name).destination
         was_seen = view.sees(place)
+        assert ("turns the view to it" in hint(user)) == (not was_seen)
         user.press(SPACE, widget=view)
         presses += 1
         if was_seen:
