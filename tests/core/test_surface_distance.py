@@ -227,6 +227,17 @@ def test_warming_up_compiles_the_search_there_is_one_of():
     assert before == len(loops.closest_triangles.signatures) == 1
 
 
+def test_for_a_few_landmarks_on_a_bone_nothing_compiled_is_loaded(monkeypatch):
+    asked = []
+    monkeypatch.setattr(surface_distance, "_compiled", lambda: asked.append(True))
+    ball = pv.Icosphere(radius=10.0, nsub=5)
+    index = SurfaceIndex(Mesh(ball.points, ball.regular_faces))
+    index.distances(index.mesh.vertices[:20])
+    assert not asked
+    index.distances(index.mesh.vertices[:2000])
+    assert asked
+
+
 # Comparisons
 
 

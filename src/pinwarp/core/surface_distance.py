@@ -22,8 +22,10 @@ Rows = NDArray[np.int64]
 
 # The most triangles in a leaf of the tree: fewer cost memory, more cost time.
 LEAF = 4
-# Below so many places and triangles numpy is done before numba would have been loaded.
+# Below so many places numpy is done before numba would have been loaded.
 WORTH_COMPILING = 2000
+# So many triangles take it as long as one place more.
+TRIANGLES_A_PLACE = 50
 # Below so many places (a few milliseconds) a second thread is not worth starting.
 WORTH_THREADS = 4000
 # After so many places a search can be stopped: less than a tenth of a second where they are close.
@@ -134,7 +136,8 @@ class SurfaceIndex:
 
     def _worth(self, count: int) -> ModuleType | None:
         """Return the compiled loops where so many places are worth them."""
-        return _compiled() if count + len(self._order) >= WORTH_COMPILING else None
+        work = count + len(self._order) // TRIANGLES_A_PLACE
+        return _compiled() if work >= WORTH_COMPILING else None
 
     def _search(
         self, places: Matrix, loops: ModuleType | None, checkpoint: Checkpoint = go_on
