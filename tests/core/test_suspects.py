@@ -63,6 +63,16 @@ def test_a_clean_bone_has_no_wrong_landmark():
     assert strict(judged(*bone())) == []
 
 
+def test_what_is_small_beside_the_bone_is_only_worth_a_look_unless_it_is_all_the_clearer():
+    def found(noise, off):
+        source, destination = bone(25, noise, seed=4)
+        destination[7] += [0, off, 0]
+        return [(x.kind, x.rows) for x in judged(source, destination)]
+
+    assert found(noise=1.0, off=12) == [(LOOK, (7,))]
+    assert found(noise=1.0, off=20) == found(noise=0.3, off=12) == [(DISPLACED, (7,))]
+
+
 def test_nobody_is_blamed_twice_for_several_mistakes():
     source, destination = bone(30, seed=1)
     destination[[5, 13, 21]] += [[0, 60, 0], [50, 0, 0], [0, 0, 70]]

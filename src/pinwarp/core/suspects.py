@@ -4,12 +4,13 @@ Explanations compete by their likelihood: nothing wrong, one pair displaced, two
 best is taken if sets without a mistake hardly ever show as much, its pairs are left out or put
 right, and the others are judged again without them. A displaced pair must be strange whether the
 bones differ as roughly as the spline supposes or smoothly: of either field alone, one clean set
-in ten has such a pair.
+in ten has such a pair. Single landmarks of honest bones are placed a little differently, too: a
+pair that is off by little beside the bone is wrong only if that is all the clearer.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from itertools import chain
 from math import comb
@@ -25,14 +26,15 @@ from pinwarp.core.findings import Finding, FindingKind
 from pinwarp.core.positions import quiet
 from pinwarp.core.quality import ROUNDING
 from pinwarp.core.spline import displacements
-from pinwarp.core.witnesses import LEAST_FREEDOM, Witnesses
+from pinwarp.core.witnesses import LEAST_FREEDOM, Asked, Witnesses
 
 Matrix = NDArray[np.float64]
 
 # How often a set without a mistake may show as much: for a finding, and for a remark.
-STRICT, WORTH_A_LOOK = 0.07, 0.4
-# In sets of less freedom than this the tail is hardly known: a finding must be clearer.
-LEARNT = 12
+STRICT, WORTH_A_LOOK = 0.06, 0.4
+# A mistake that is off by less than this share of the landmarks' RMS radius must be clearer: so
+# far off are single landmarks of real bones that were only placed a little differently.
+LARGE = 0.2
 # No more than this share of the pairs is called wrong.
 MOST_WRONG = 0.3
 # Explanations closer than this many nats are not told apart; so many are looked at.
@@ -44,6 +46,9 @@ FREE_COORDINATE = 2.0
 FEW, MOST_HIDDEN, DOUBTFUL = 40, 3, 0.02
 # Exchanges are tried among so many of the strangest pairs.
 EXCHANGED = 60
+_TINY = 1e-300
+
+_Judge = Callable[[list[Asked], float], list[Chance]]
 
 
 @quiet
@@ -123,7 +128,8 @@ class _Search:
             if self._free_count(seen) == 0:
                 return
             exchange = self._exchanged(seen)
-            found = [exchange] if exchange else self._one_or_two(seen, _strict(seen))
+            judge = self._beside_the_bone
+            found = [exchange] if exchange else self._one_or_two(seen, STRICT, judge)
             if not found and len(self._free) <= FEW:
                 found = self._hidden(seen)
             if not found:
@@ -133,10 +139,13 @@ class _Search:
     def remarks(self) -> Iterator[Finding]:
         """Yield what some of them show as well."""
         while self._may_go_on():
-            found = self._one_or_two(self._without(), WORTH_A_LOOK)
+            found = self._one_or_two(self._without(), WORTH_A_LOOK, self._pairs.agreed)
             if not found:
                 return
-            yield from (replace(x, kind=FindingKind.WORTH_A_LOOK, rows=x.rows[:1]) for x in found)
+            # However unlikely, what is small beside the bone is no rarer than a mistake.
+            (x,) = found
+            value = max(x.value, STRICT)
+            yield replace(x, kind=FindingKind.WORTH_A_LOOK, rows=x.rows[:1], value=value)
 
     # What is left
 
@@ -159,11 +168,11 @@ class _Search:
 
     # One pair, or one of two
 
-    def _one_or_two(self, seen: Evidence, limit: float) -> list[Finding]:
+    def _one_or_two(self, seen: Evidence, limit: float, judge: _Judge) -> list[Finding]:
         """Find the pair whose leaving out explains most, or the two that do so equally well."""
         count = self._free_count(seen)
         rows = self._strangest(seen, ALIKE)
-        chances = self._pairs.agreed([(seen, row) for row in rows], limit / count)
+        chances = judge([(seen, row) for row in rows], limit / count)
         judged = zip(rows, chances, strict=True)
         passed = sorted((x for x in judged if x[1].value * count < limit), key=lambda x: x[1].value)
         if not passed:
@@ -185,7 +194,7 @@ class _Search:
             if seen.freedom < LEAST_FREEDOM + number:
                 return []
             choices = comb(count, number)
-            limit = _strict(seen) / choices
+            limit = STRICT / choices
             # Of more than two only those that the strangest leads to.
             starts = self._strangest(seen)[: LOOKED_AT if number == 2 else 1]
             sets = [rows for first in starts if (rows := self._hiding(first, number))]
@@ -216,9 +225,17 @@ class _Search:
             for rows in sets
             for row in rows
         ]
-        chances = iter(self._pairs.agreed(asked, limit))
+        chances = iter(self._beside_the_bone(asked, limit))
         judged = [[(row, next(chances)) for row in rows] for rows in sets]
         return [one for one in judged if _worst(one) < limit]
+
+    def _beside_the_bone(self, asked: list[Asked], limit: float) -> list[Chance]:
+        """Judge pairs: those that are off by little beside the bone are the less unlikely."""
+        large = LARGE / np.sqrt(len(self._free))
+        return [
+            replace(x, value=x.value / float(np.clip((x.shift / large) ** 2, _TINY, 1.0)))
+            for x in self._pairs.agreed(asked, limit)
+        ]
 
     def _finding(self, rows: tuple[int, ...], chance: Chance, of_a_set: float) -> Finding:
         shift, usual = chance.shift * self._unit, chance.usual * self._unit
@@ -254,8 +271,3 @@ class _Search:
 
 def _worst(judged: list[tuple[int, Chance]]) -> float:
     return max(chance.value for _, chance in judged)
-
-
-def _strict(seen: Evidence) -> float:
-    """Return how often clean sets of such a size may show as much as a finding."""
-    return STRICT * min(1.0, (seen.freedom + LEAST_FREEDOM) / (LEARNT + LEAST_FREEDOM))
