@@ -173,6 +173,19 @@ def test_any_two_swapped_destinations_are_found_out():
         assert [(x.kind, set(x.rows)) for x in found] == [(SWAPPED, {i, j})]
 
 
+def test_two_that_lie_together_look_swapped_only_where_that_is_clearly_likelier():
+    def found(apart):
+        source, destination = bone(noise=2.0)
+        source[8] = source[3] + [0, 0, apart]
+        warp = solve(factorise(np.delete(source, 8, 0)), np.delete(destination, 8, 0))
+        destination[8] = warp.evaluate(source[8:9])[0] + 2 * np.random.default_rng(0).normal(size=3)
+        destination[[3, 8]] = destination[[8, 3]]
+        return [(x.kind, set(x.rows)) for x in strict(judged(source, destination))]
+
+    assert found(apart=4) == []
+    assert found(apart=8) == [(SWAPPED, {3, 8})]
+
+
 def test_two_swaps_are_found_one_after_the_other():
     source, destination = bone()
     destination[[2, 11, 5, 17]] = destination[[11, 2, 17, 5]]

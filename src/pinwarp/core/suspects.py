@@ -256,7 +256,7 @@ class _Search:
         likely, i, j = best_exchange(seen, rows)
         gain = likely - before - np.log(count * (count - 1) / 2)
         alone = float(seen.one_wrong[free].max()) - before - np.log(count) - 3 * FREE_COORDINATE
-        if gain <= max(0.0, alone) or (len(free) > FEW and self._doubtful(i, j)):
+        if gain <= max(ALIKE, alone) or (len(free) > FEW and self._doubtful(i, j)):
             return None
         self._pairs.exchange(i, j)
         self._free[[i, j]] = False
