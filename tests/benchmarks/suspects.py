@@ -45,6 +45,8 @@ def rates_of(name: str, field: Any, count: int) -> Row:
         displaced, two = judged(displaced=1), judged(displaced=2, off=0.15)
         row["one named"] = _share(_all_named, displaced)
         row["two named"] = _share(_all_named, two)
+        if count // 10 > 1:
+            row["tenth named"] = _share(_all_named, judged(displaced=count // 10, off=0.15))
         row["innocents"] = _share(_innocents, displaced)
         row["false swaps"] = _share(_false_swaps, displaced)
         row["swap exactly"] = _share(_exactly, judged(swap=True))

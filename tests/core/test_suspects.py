@@ -150,6 +150,13 @@ def test_one_displaced_by_a_tenth_of_the_bone_is_named_and_others_are_not(field,
     assert innocents <= 1
 
 
+@pytest.mark.parametrize(("count", "displaced", "sets"), [(60, 3, 4), (60, 6, 2), (150, 15, 1)])
+def test_several_of_many_do_not_hide_one_another(count, displaced, sets):
+    for seed in range(sets):
+        case = made_up(count, seed, FIELDS[seed % 2], displaced=displaced, off=0.15)
+        assert named(suspects(case.factor, case.destination)) == case.wrong
+
+
 def test_a_swap_with_one_displaced_is_told_from_it():
     right = 0
     for seed in range(10):

@@ -44,6 +44,9 @@ FREE_COORDINATE = 2.0
 # Up to so many pairs, some that hide one another are looked for, and so many of them; in more
 # pairs, each of two exchanged must be as unlikely as this by itself.
 FEW, MOST_HIDDEN, DOUBTFUL = 40, 3, 0.02
+# Of more pairs so many at most are left out one after the other, each for so many nats besides
+# the choice of it.
+MOST_MASKED, PLAIN = 20, 3.0
 # Exchanges are tried among so many of the strangest pairs.
 EXCHANGED = 60
 _TINY = 1e-300
@@ -130,8 +133,9 @@ class _Search:
             exchange = self._exchanged(seen)
             judge = self._beside_the_bone
             found = [exchange] if exchange else self._one_or_two(seen, STRICT, judge)
-            if not found and len(self._free) <= FEW:
-                found = self._hidden(seen)
+            if not found:
+                few = len(self._free) <= FEW
+                found = self._hidden(seen) if few else self._masked(seen)
             if not found:
                 return
             yield from found
@@ -198,7 +202,7 @@ class _Search:
             # Of more than two only those that the strangest leads to.
             starts = self._strangest(seen)[: LOOKED_AT if number == 2 else 1]
             sets = [rows for first in starts if (rows := self._hiding(first, number))]
-            found = self._all_strange(sets, limit)
+            found = [one for one in self._each(sets, limit) if _worst(one) < limit]
             if found:
                 best = min(found, key=_worst)
                 for row, _ in best:
@@ -218,16 +222,39 @@ class _Search:
             rows.append(following[0])
         return rows[::-1]
 
-    def _all_strange(self, sets: list[list[int]], limit: float) -> list[list[tuple[int, Chance]]]:
-        """Judge each pair of some sets without the others of its set: keep sets of strange ones."""
+    def _masked(self, seen: Evidence) -> list[Finding]:
+        """Find several of many pairs, left out one by one while that explains a lot."""
+        count, out = self._free_count(seen), seen
+        limit = STRICT / count
+        named = int(np.sum(~self._free))
+        rows: list[int] = []
+        while len(rows) < min(MOST_MASKED, MOST_WRONG * len(self._free) - named):
+            strangest = self._strangest(out)[:1]
+            gains = out.one_wrong[strangest, out.level] - out.nothing_wrong[out.level]
+            if out.freedom <= LEAST_FREEDOM or not np.any(gains > np.log(count) + PLAIN):
+                break
+            rows += strangest
+            out = self._without(*rows)
+        while len(rows) > 1:
+            (judged,) = self._each([rows], limit)
+            strange = [row for row, chance in judged if chance.value < limit]
+            if strange == rows:
+                for row in rows:
+                    self._leave_out(row)
+                return [self._finding((row,), x, x.value * count) for row, x in judged]
+            # Those that are ordinary without the others are among the others.
+            rows = strange
+        return []
+
+    def _each(self, sets: list[list[int]], limit: float) -> list[list[tuple[int, Chance]]]:
+        """Judge each pair of some sets without the others of its set."""
         asked = [
             (self._without(*(other for other in rows if other != row)), row)
             for rows in sets
             for row in rows
         ]
         chances = iter(self._beside_the_bone(asked, limit))
-        judged = [[(row, next(chances)) for row in rows] for rows in sets]
-        return [one for one in judged if _worst(one) < limit]
+        return [[(row, next(chances)) for row in rows] for rows in sets]
 
     def _beside_the_bone(self, asked: list[Asked], limit: float) -> list[Chance]:
         """Judge pairs: those that are off by little beside the bone are the less unlikely."""
