@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.distance import cdist
+from tests.core.amplitudes import sigma_of
 from tests.core.strategies import landmark_pairs
 from tests.core.test_prediction import for_few
 from tests.core.test_tps3d import affine_fit, diagonal, probes, rms
@@ -180,7 +181,7 @@ def test_the_uncertainty_is_that_of_kriging_with_its_covariance(penalty):
     borders = np.hstack([LOG.of(cdist(v, source)), np.ones((10, 1)), v])
     variance = -np.einsum("mi,ij,mj->m", borders, inverse, borders)
     G = inverse[:14, :14]
-    sigma = np.sqrt(np.mean((G @ destination) ** 2 / np.diag(G)[:, None]))
+    sigma = sigma_of(G, source, destination)
     found = prediction_of(factor, destination, penalty).standard_deviation(v)
     assert np.allclose(found, for_few(14) * sigma * np.sqrt(variance), rtol=1e-6)
 

@@ -93,7 +93,8 @@ def test_deviations_belong_to_what_is_applied(sample):
         (edits.set_penalty(sample, 2.0), 2.0),
         (edits.set_components(sample, Components.AFFINE), math.inf),
     ):
-        prediction = prediction_of(factorise(source), destination, penalty)
+        size = sample.mesh(Side.SOURCE).diagonal
+        prediction = prediction_of(factorise(source), destination, penalty, size)
         assert np.allclose(deviations(session), prediction.standard_deviation(places))
     # Of these nothing is known: better no figure than a wrong one.
     assert deviations(edits.set_blend(sample, 0.5)) is None
@@ -103,10 +104,13 @@ def test_deviations_belong_to_what_is_applied(sample):
 
 
 def test_few_pairs_and_no_destination_give_fewer_figures(sample):
-    few = replace(sample, landmarks=sample.pairs[:4], destination=None)
+    few = replace(sample, landmarks=sample.pairs[:2], destination=None)
     data = warped_mesh_data(few)
     assert set(data.scalars) == {"det_j", "largest_stretch", "smallest_stretch"}
     assert data.normals.shape == few.mesh(Side.SOURCE).vertices.shape
+    # Of three it is what bones of that size are known for.
+    three = warped_mesh_data(replace(few, landmarks=sample.pairs[:3])).scalars["deviation_mm"]
+    assert 1 < np.median(three) < 150
 
 
 @pytest.mark.parametrize(

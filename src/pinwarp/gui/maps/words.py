@@ -42,8 +42,9 @@ MEANINGS = {
     ),
     MapKind.UNCERTAINTY: (
         "Standard deviation of one coordinate of the full warp, told from how well the pairs "
-        "foretell one another: largest where landmarks are far away. Within twice of it lie about "
-        "three in four true places."
+        "foretell one another and from what bones of this size are known for: largest where "
+        "landmarks are far away. About three in four true places lie within twice of it, one in "
+        "ten beyond three times."
     ),
 }
 

@@ -17,6 +17,7 @@ from pinwarp.core.normals import vertex_normals
 from pinwarp.core.prediction import Prediction, prediction_of
 from pinwarp.io.mesh_formats.vertex_data import VertexData
 from pinwarp.session.session import Session
+from pinwarp.session.warp.ghost import FEWEST_PAIRS
 from pinwarp.session.warp.solved import SolvedWarp, in_parts, solved
 
 Matrix = NDArray[np.float64]
@@ -105,13 +106,16 @@ def _prediction(warp: SolvedWarp) -> Prediction | None:
     settings = warp.session.settings
     if settings.blend != 1 or not settings.is_regular or warp.result.semilandmarks is not None:
         return None
+    if len(warp.destination) < FEWEST_PAIRS:
+        return None
     match settings.components:
         case Components.FULL | Components.WITHOUT_POSE:
-            return prediction_of(warp.factor, warp.destination, settings.penalty)
+            penalty = settings.penalty
         case Components.AFFINE:
-            return prediction_of(warp.factor, warp.destination, math.inf)
+            penalty = math.inf
         case _:
             return None
+    return prediction_of(warp.factor, warp.destination, penalty, warp.source.diagonal)
 
 
 def _in_a_name(unit: str) -> str:

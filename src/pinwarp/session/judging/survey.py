@@ -25,18 +25,14 @@ from pinwarp.core.mesh import Mesh
 from pinwarp.core.prediction import prediction_of
 from pinwarp.core.spline import Spline
 from pinwarp.core.surface_distance import SurfaceIndex
-from pinwarp.session.judging.quality import LEAST_PAIRS
+from pinwarp.session.warp.ghost import FEWEST_PAIRS
 from pinwarp.session.warp.result import WarpResult
 
 # Shares of a survey's time: the look for folds, and of a distance map the two indexes.
 LOOK, INDEX = 0.1, 0.3
 FEW_PAIRS = (
-    "The uncertainty needs five pairs that do not lie in one plane, since it is told from how "
-    "well the pairs foretell one another: place another pair."
-)
-FITTED = (
-    "With semilandmarks nothing foretells the uncertainty, since they were fitted to the surface, "
-    "not observed: remove curves and patches to see that of the landmarks."
+    "The uncertainty needs three pairs: with fewer a prediction says more about them than about "
+    "the bone. Place another pair."
 )
 
 
@@ -205,14 +201,11 @@ class Surveyor:
                 jacobian = jacobians(shown, mesh.vertices, checkpoint)
                 made = stretch_maps(jacobian, mesh, self._taken_out)
             case MapKind.UNCERTAINTY:
+                # Of the landmarks alone, whatever else was fitted to the surface.
                 prediction = prediction_of(
-                    factor, np.array(inputs.destination), inputs.settings.penalty
+                    factor, np.array(inputs.destination), inputs.settings.penalty, mesh.diagonal
                 )
-                made = (
-                    (uncertainty_map(prediction, mesh, checkpoint),)
-                    if prediction is not None
-                    else ()
-                )
+                made = (uncertainty_map(prediction, mesh, checkpoint),)
         self.maps += len(made)
         self._maps.update({part.kind: part for part in made})
 
@@ -235,9 +228,7 @@ def _missing(result: WarpResult, destination: Mesh | None, kind: MapKind) -> str
     if kind is MapKind.DISTANCE and destination is None:
         return "Open the destination mesh: the distance to it is what this map shows."
     if kind is MapKind.UNCERTAINTY:
-        if result.semilandmarks is not None:
-            return FITTED
-        if len(inputs.source) < LEAST_PAIRS:
+        if len(inputs.source) < FEWEST_PAIRS:
             return FEW_PAIRS
         if not inputs.settings.is_regular:
             return (

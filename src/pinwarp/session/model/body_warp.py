@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pinwarp.core.components import Components
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.jacobian import determinants, jacobians
+from pinwarp.core.landmarks import Side
 from pinwarp.core.lengths import rms
 from pinwarp.core.prediction import Prediction, prediction_of
 from pinwarp.core.spline import Spline
@@ -19,6 +20,7 @@ from pinwarp.core.words import counted
 from pinwarp.io.osim.bone import Bone
 from pinwarp.session.model.body_view import BodyView, in_body_frame, view_of
 from pinwarp.session.session import Session
+from pinwarp.session.warp.ghost import FEWEST_PAIRS
 from pinwarp.session.warp.refined import OUT_OF_DATE, is_out_of_date, refinement_in_use
 from pinwarp.session.warp.slid_words import not_sliding_note
 from pinwarp.session.warp.solved import SolvedWarp, solved
@@ -132,9 +134,11 @@ def body_warp(session: Session, bone: Bone) -> BodyWarp:
 
 def _prediction(solution: SolvedWarp) -> Prediction | None:
     settings, result = solution.session.settings, solution.result
-    if not settings.is_regular or result.is_fitted:
+    if not settings.is_regular or result.is_fitted or len(solution.destination) < FEWEST_PAIRS:
         return None
-    return prediction_of(solution.factor, solution.destination, settings.penalty)
+    mesh = solution.session.mesh(Side.SOURCE)
+    size = None if mesh is None else mesh.diagonal
+    return prediction_of(solution.factor, solution.destination, settings.penalty, size)
 
 
 def _about_suggested(session: Session) -> tuple[str, ...]:

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from pinwarp.core.errors import RangeError
 from pinwarp.core.factor import SourceFactor
 from pinwarp.core.landmarks import Landmark, Position, Side, as_position
-from pinwarp.core.prediction import inverse_warp, prediction_of, prior_prediction
-from pinwarp.core.spline import PenaltyConvention, Spline
+from pinwarp.core.prediction import inverse_warp, prediction_of
 from pinwarp.session.warp.result import WarpResult
 
 # With fewer pairs a prediction says more about the pairs than about the bone.
@@ -31,8 +30,10 @@ class Ghost:
     position
         Where it is expected, in that side's mesh unit.
     deviation
-        The prediction's standard deviation there, in destination mesh units, told by the bone's
-        size where there are too few pairs; None with semilandmarks.
+        The prediction's standard deviation there, in destination mesh units. It is that of the
+        landmarks alone: semilandmarks, which were fitted and not observed, may bring the place
+        nearer, so with them it is rather too wide. None while something moves, and of a penalty
+        that does not regularise.
     """
 
     name: str
@@ -77,25 +78,21 @@ def _predicted(landmark: Landmark | None, side: Side, result: WarpResult) -> Gho
         if not converged[0]:
             return None
         expected = source
-    deviation = _deviation(result, factor, spline, source)
+    deviation = _deviation(result, factor, source)
     return Ghost(landmark.name, side, as_position(expected[0]), deviation)
 
 
 def _deviation(
-    result: WarpResult, factor: SourceFactor, spline: Spline, source: NDArray[np.float64]
+    result: WarpResult, factor: SourceFactor, source: NDArray[np.float64]
 ) -> float | None:
     """Return how far the warp may be off at a place of the source, None where nobody can tell."""
-    # Not while the eigenvalues are put off: they would hold the hand up. Semilandmarks bring the
-    # expected place nearer than the pairs alone could tell.
-    if result.semilandmarks is not None or not factor.has_modes:
+    inputs = result.inputs
+    # Not while the eigenvalues are put off: they would hold the hand up.
+    if not factor.has_modes:
         return None
-    destination = np.array(result.inputs.destination)
-    if not factor.usable_modes.any():
-        mesh = result.inputs.mesh
-        known = factor.source if mesh is None else mesh.vertices
-        size = float(np.linalg.norm(np.ptp(known, axis=0)))
-        return float(prior_prediction(factor, destination, size).standard_deviation(source)[0])
-    if spline.convention is not PenaltyConvention.REGULARISING:
+    if factor.usable_modes.any() and not inputs.settings.is_regular:
         return None
-    prediction = prediction_of(factor, destination, spline.penalty)
-    return None if prediction is None else float(prediction.standard_deviation(source)[0])
+    size = None if inputs.mesh is None else inputs.mesh.diagonal
+    destination = np.array(inputs.destination)
+    prediction = prediction_of(factor, destination, inputs.settings.penalty, size)
+    return float(prediction.standard_deviation(source)[0])
