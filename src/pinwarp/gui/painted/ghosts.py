@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 from qtpy.QtCore import QPointF, Qt
-from qtpy.QtGui import QColor, QPainter
+from qtpy.QtGui import QColor, QPainter, QPen
 
 from pinwarp.core.landmarks import Position
 from pinwarp.gui.painted.labels import Labels
@@ -53,7 +53,7 @@ class GhostPainter:
         ((x, y),), (hidden,) = self._project([ghost.position]), self._are_hidden([ghost.position])
         at = QPointF(x, y)
         painter.setOpacity(0.5 if hidden else 1.0)
-        self._paint_doubt(painter, ghost, at, 0.22)
+        self._paint_doubt(painter, ghost, at, 0.22, edge=0.6)
         draw_ghost(painter, at, GHOST_RADIUS)
         painter.setOpacity(1.0)
         # Said, too: a ring may look faint for other reasons.
@@ -75,8 +75,10 @@ class GhostPainter:
                 self._labels.draw(painter, f"{ghost.name}?", at)
         painter.setOpacity(1.0)
 
-    def _paint_doubt(self, painter: QPainter, ghost: Ghost, at: QPointF, alpha: float) -> None:
-        """Paint a disc as wide as the doubt."""
+    def _paint_doubt(
+        self, painter: QPainter, ghost: Ghost, at: QPointF, alpha: float, edge: float = 0.0
+    ) -> None:
+        """Paint a disc as wide as the doubt, with an edge as strong as is asked for."""
         if ghost.deviation is None:
             return
         radius = (
@@ -87,3 +89,11 @@ class GhostPainter:
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(colour)
         painter.drawEllipse(at, radius, radius)
+        if edge:
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            # Light around dark: one of them is seen on any background, the warp's blue too.
+            light = QColor(theme.PAPER)
+            for line, width, strength in ((light, 3.0, 0.6 * edge), (colour, 1.2, edge)):
+                line.setAlphaF(strength)
+                painter.setPen(QPen(line, width))
+                painter.drawEllipse(at, radius, radius)
