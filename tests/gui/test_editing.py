@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from qtpy.QtCore import QPoint, QPointF, Qt
 from qtpy.QtTest import QTest
+from tests.gui.drawing import clear_spots, draw
 
 from pinwarp.core.landmarks import LandmarkState, Role, Side
 from pinwarp.session import edits
@@ -229,6 +230,52 @@ def test_below_three_pairs_there_is_no_ghost(user):
     assert [user.window.parts.ghosts.at(side) for side in Side] == [None, None]
     user.press(Qt.Key.Key_Space)
     assert "nothing to accept" in user.window.statusBar().currentMessage()
+
+
+def see_its_disc(user):
+    """The ghost on the destination has a tint that goes with its landmark."""
+    viewport = user.window.viewports[DESTINATION]
+    ghost = viewport.drawn(Ghost)
+    radius = ghost.deviation * viewport.pixels_per_unit(np.array(ghost.position))
+    at = user.place_of(DESTINATION, ghost.position)
+    # Within the disc, and not on the ring.
+    reach = min(radius - 1.5, 20) if radius > 13 else 4
+    assert radius > reach
+    around = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    spots = [at + QPoint(round(reach * np.cos(a)), round(reach * np.sin(a))) for a in around]
+    pictures = [viewport.grab().toImage()]
+    user.press(Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert viewport.drawn(Ghost) is None
+    pictures.append(viewport.grab().toImage())
+    user.press(
+        Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier
+    )
+    seen, bare = ([picture.pixelColor(spot).getRgb() for spot in spots] for picture in pictures)
+    assert sum(one != other for one, other in zip(seen, bare, strict=True)) >= 8
+
+
+def test_a_ghost_has_its_disc_with_three_pairs_and_with_five(user):
+    user.open_sample_meshes()
+    places = {side: user.places_down_the_bone(side, 8) for side in Side}
+    # From end to end, then between.
+    order = [0, 7, 3, 5, 1, 6]
+    for count, row in enumerate(order):
+        user.click_position(SOURCE, places[SOURCE][row])
+        if count in (3, 5):
+            see_its_disc(user)
+        user.click_position(DESTINATION, places[DESTINATION][row])
+        assert len(user.session.pairs) == count + 1
+
+
+def test_where_semilandmarks_slide_the_ghost_has_the_disc_of_the_pairs(user):
+    without(user, DESTINATION, "femoral_head_anterior")
+    viewport = user.window.viewports[DESTINATION]
+    alone = viewport.drawn(Ghost)
+    draw(user, clear_spots(user, 3, first=0.3, last=0.7))
+    slid = viewport.drawn(Ghost)
+    assert slid.position != alone.position
+    assert slid.deviation == pytest.approx(alone.deviation)
+    assert slid.deviation > 0
 
 
 def test_with_three_or_four_pairs_the_disc_comes_of_the_bones_size(user):
