@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from qtpy.QtCore import QPointF, Qt
-from qtpy.QtGui import QAccessible
-from qtpy.QtWidgets import QAbstractSpinBox, QApplication, QLabel, QWidget
+from qtpy.QtWidgets import QApplication, QLabel, QWidget
+from tests.gui.focus import nameless, not_reached
 
 from pinwarp.core.landmarks import Role, Side
 from pinwarp.gui.views.viewport import CROSSHAIR_STEP
@@ -98,29 +98,24 @@ def test_the_bones_are_turned_and_zoomed_by_keys(user):
     assert np.isclose(views[0].camera.GetDistance(), far)
 
 
-def name_of(widget: QWidget) -> str:
-    told = QAccessible.queryAccessibleInterface(widget)
-    return told.text(QAccessible.Text.Name).strip() if told is not None else ""
-
-
-def test_every_widget_that_takes_the_focus_says_what_it_is(user):
+def test_every_widget_of_the_window_says_what_it_is_and_is_reached_by_tab(user):
     user.open_sample()
-    nameless = set()
+    user.trigger("snapshot")
+    user.trigger("tour")
+    faults = []
     for name in ("landmarks", "warp", "map", "semilandmarks", "refine", "model", "penalty"):
         dock = user.window.findChild(QWidget, name)
         dock.show()
         dock.raise_()
         user.settle()
-        for widget in user.window.findChildren(QWidget):
-            takes_it = widget.focusPolicy() != Qt.FocusPolicy.NoFocus and widget.isVisible()
-            # A spin box speaks for the field inside it.
-            if (
-                takes_it
-                and not isinstance(widget.parent(), QAbstractSpinBox)
-                and not name_of(widget)
-            ):
-                nameless.add(f"{type(widget).__name__} in {type(widget.parent()).__name__}, {name}")
-    assert not nameless, "\n".join(sorted(nameless))
+        user.window.parts.table.table.setFocus()
+        faults += [f"{name}: {x}" for x in (*nameless(user.window), *not_reached(user.window))]
+    user.trigger("user_guide")
+    guide = QApplication.activeWindow()
+    assert guide is not user.window
+    faults += nameless(guide) + not_reached(guide)
+    guide.close()
+    assert not faults, "\n".join(dict.fromkeys(faults))
 
 
 def test_every_action_can_be_reached_by_the_keyboard(user):

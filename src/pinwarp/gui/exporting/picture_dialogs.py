@@ -84,12 +84,15 @@ class _SizeDialog(QDialog):
         self.export.setText("Export…")
         self.buttons.accepted.connect(self.accept)
         self.buttons.rejected.connect(self.reject)
+        self.setMinimumWidth(400)
+
+    def _lay_out(self) -> None:
+        """Put together what was made, the form being whole: Tab goes in this order."""
         column = QVBoxLayout(self)
         column.addLayout(self.form)
         column.addSpacing(theme.SPACE)
         column.addWidget(self.note)
         column.addWidget(self.buttons)
-        self.setMinimumWidth(400)
 
     def _say(self, words: str, *, possible: bool) -> None:
         self.note.setText(words)
@@ -142,6 +145,7 @@ class PictureDialog(_SizeDialog):
         boxes = (self.landmarks, self.names, self.framed, self.transparent, self.filled)
         for row, box in enumerate(boxes):
             self.form.addRow("Show" if not row else "", box)
+        self._lay_out()
         for size in (self.image_width, self.image_height):
             size.valueChanged.connect(self._on_size_chosen)
         for box in boxes:
@@ -223,6 +227,10 @@ class AnimationDialog(_SizeDialog):
         self.form.addRow("&Frames", self.frames)
         self.form.addRow("&Duration", self.seconds)
         self.form.addRow("File &type", self.format)
+        self._lay_out()
+        # What was put in above them comes first.
+        QWidget.setTabOrder(self.motion, self.image_width)
+        QWidget.setTabOrder(self.image_width, self.image_height)
         self.format.currentIndexChanged.connect(lambda _row: self._show())
         for box in (self.image_width, self.image_height, self.frames, self.seconds):
             box.valueChanged.connect(lambda _value: self._show())

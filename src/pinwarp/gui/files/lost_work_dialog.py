@@ -102,6 +102,7 @@ class LostWorkDialog(QDialog):
     def _fill(self) -> None:
         several = len(self._found) > 1
         self.list.setVisible(several)
+        self.list.setAccessibleName("Unsaved work")
         self.list.setRootIsDecorated(False)
         self.list.setAlternatingRowColors(True)
         self.list.setTextElideMode(Qt.TextElideMode.ElideMiddle)

@@ -26,6 +26,7 @@ from pinwarp.core.landmarks import Side
 from pinwarp.core.words import counted, listed
 from pinwarp.gui.importing.arrival_model import ArrivalModel
 from pinwarp.gui.style import theme
+from pinwarp.gui.style.choice import lead_tab_to_checked
 from pinwarp.io.landmark_files import LandmarkReading
 from pinwarp.session.importing.asking import doubts_of
 from pinwarp.session.importing.fit import Fit, distance_from_mesh
@@ -89,6 +90,8 @@ class ImportDialog(QDialog):
         self._lay_out()
         self.buttons.accepted.connect(self.accept)
         self.buttons.rejected.connect(self.reject)
+        # Once it stands in the dialog: there was no focus to be had before.
+        self.buttons.button(kinds.Ok).setFocus()
         self._show()
         layout = self.layout()
         if not arriving.landmarks and layout is not None:
@@ -105,12 +108,15 @@ class ImportDialog(QDialog):
             button.setEnabled(can_pair(self._session, self._arriving, pairing))
             button.setChecked(pairing is self.choice.pairing)
             group.addButton(button)
+        lead_tab_to_checked(group)
         group.buttonToggled.connect(lambda _button, on: self._show() if on else None)
         self.table.setModel(self.model)
         self.table.setSelectionMode(QTableView.SelectionMode.NoSelection)
         self.table.setAlternatingRowColors(True)
         self.table.setShowGrid(False)
         self.table.setWordWrap(False)
+        # Nothing is chosen in it: Tab leads on to the buttons.
+        self.table.setTabKeyNavigation(False)
         self.table.verticalHeader().hide()
         self.table.verticalHeader().setDefaultSectionSize(self.fontMetrics().height() + 7)
         rows = self.table.verticalHeader().defaultSectionSize()
@@ -128,7 +134,6 @@ class ImportDialog(QDialog):
         button = self.buttons.button(QDialogButtonBox.StandardButton.Ok)
         button.setText("Import")
         button.setDefault(True)
-        button.setFocus()
 
     def _lay_out(self) -> None:
         reading = self._arriving.reading
@@ -203,6 +208,7 @@ class ImportDialog(QDialog):
             grid.addWidget(button, row, 0)
             far = distance_from_mesh(fit.distance, size, ruler)
             grid.addWidget(_label(far, quiet=True), row, 1)
+        lead_tab_to_checked(group)
         group.buttonToggled.connect(lambda _button, on: self._show() if on else None)
         column.addLayout(grid)
         return frame

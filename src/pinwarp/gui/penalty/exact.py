@@ -43,6 +43,7 @@ class ExactPenalty(QWidget):
         # Only where lengths are shown in another unit than that of the files.
         self.shown_unit = QLabel()
         self.unit = QComboBox()
+        self.unit.setAccessibleName("Unit of the files")
         # With the basis r² log r they are squared, and wider.
         self.unit.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
         self.unit.setToolTip("The unit that the files are in: nothing is converted")

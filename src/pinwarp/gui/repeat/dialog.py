@@ -29,6 +29,7 @@ from pinwarp.core.landmarks import Side
 from pinwarp.core.lengths import Ruler
 from pinwarp.gui.repeat.spread_table import SpreadTable
 from pinwarp.gui.style import theme
+from pinwarp.gui.style.choice import lead_tab_to_checked
 from pinwarp.gui.tasks.dropping import dropped_files
 from pinwarp.session.repeat.level import PenaltyOfNoise
 from pinwarp.session.repeat.measuring import Asked, Measured
@@ -125,6 +126,7 @@ class PrecisionDialog(QDialog):
         for button in self.sides.values():
             group.addButton(button)
             sides.addWidget(button)
+        lead_tab_to_checked(group)
         sides.addSpacing(3 * theme.SPACE)
         sides.addWidget(self.with_session)
         sides.addStretch()

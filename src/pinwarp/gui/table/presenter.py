@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from qtpy.QtCore import QSettings
-from qtpy.QtWidgets import QInputDialog
+from qtpy.QtWidgets import QInputDialog, QPlainTextEdit
 
 from pinwarp.core.landmarks import Landmark, Role, Side
 from pinwarp.gui.capability.action import Action
@@ -286,6 +286,10 @@ class TablePresenter(Capability):
         dialog.setWindowTitle(f"Note on {landmark.name}")
         dialog.setLabelText(f"What to remember about {landmark.name}:")
         dialog.setTextValue(landmark.note)
+        for text in dialog.findChildren(QPlainTextEdit):
+            text.setAccessibleName(dialog.windowTitle())
+            # Else there is no way out of it but Escape.
+            text.setTabChangesFocus(True)
         dialog.textValueSelected.connect(
             lambda text: self._try(
                 lambda session: edits.set_note(session, landmark.name, text),

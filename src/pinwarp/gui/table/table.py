@@ -72,6 +72,8 @@ class LandmarkTable(QTableView):
         self.setAlternatingRowColors(True)
         self.setShowGrid(False)
         self.setWordWrap(False)
+        # Arrows go from cell to cell: there must be a way out of the table by keys.
+        self.setTabKeyNavigation(False)
         # The ends of names tell them apart more often than the middles.
         self.setTextElideMode(Qt.TextElideMode.ElideMiddle)
         self.setAccessibleName("Landmarks")

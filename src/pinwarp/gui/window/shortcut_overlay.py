@@ -57,6 +57,7 @@ class ShortcutOverlay(QWidget):
         super().__init__(window)
         self._groups = groups
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setAccessibleName("Keys and mouse gestures")
         self.hide()
         window.installEventFilter(self)
 
