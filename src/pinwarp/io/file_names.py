@@ -1,7 +1,8 @@
-"""How the project's own files are called."""
+"""How the project's own files are called, and how files name others."""
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
@@ -64,6 +65,30 @@ def is_backup(path: Path) -> bool:
     (True, False)
     """
     return path.name.lower().endswith(BACKUP_SUFFIX)
+
+
+def with_slashes(text: str, folder: Path) -> str:
+    r"""Return the path that a text names, its parts parted as on this system.
+
+    People write paths as Windows does, and open what they wrote elsewhere. Where a file's name
+    truly holds a backslash, and the file is there, it is meant.
+
+    Parameters
+    ----------
+    text
+        As it is written in a file.
+    folder
+        From where it is seen.
+
+    Examples
+    --------
+    >>> Path(with_slashes("bones\\femur.stl", Path("/study"))).name
+    'femur.stl'
+    """
+    # On Windows both kinds part names, and lexists would only ask the disk for nothing.
+    if "\\" not in text or os.sep == "\\" or os.path.lexists(folder / text):
+        return text
+    return text.replace("\\", "/")
 
 
 def as_file_name(name: str) -> str:

@@ -14,6 +14,7 @@ from pinwarp.core.errors import FileFormatError
 from pinwarp.core.names import visible
 from pinwarp.io.csv_cells import as_sentence, formula_unquoted, shortened
 from pinwarp.io.csv_text import Row, rows_of
+from pinwarp.io.file_names import with_slashes
 from pinwarp.io.setting_keys import penalty_of
 from pinwarp.io.text import lines_of, read_text, refuse_binary
 
@@ -299,7 +300,7 @@ def checked_name(name: str) -> str:
 
 def _path(text: str, folder: Path) -> Path:
     try:
-        return Path(os.path.abspath(folder / Path(text).expanduser()))
+        return Path(os.path.abspath(folder / Path(with_slashes(text, folder)).expanduser()))
     except RuntimeError:
         raise ValueError(f"there is no user {shortened(Path(text).parts[0])}") from None
 

@@ -8,6 +8,8 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from pinwarp.io.file_names import with_slashes
+
 _SAID = re.compile(r"(?: sha256=(?P<sha256>\S*))?(?: vertices=(?P<vertices>\d{1,18}))?", re.ASCII)
 _BEHIND = re.compile(r"(?: sha256=\S*)?(?: vertices=\d{1,18})?$", re.ASCII)
 _AT_END = re.compile(r" (?:sha256|vertices)=\S*$")
@@ -70,6 +72,8 @@ def mesh_reference(text: str, folder: Path) -> MeshReference:
     found = _SAID.fullmatch(said)
     if not name or found is None:
         raise ValueError("a mesh is given as: PATH sha256=HASH vertices=NUMBER, or by PATH alone")
+    if not text.startswith('"'):
+        name = with_slashes(name, folder)
     # '..' is counted from the real folder, as the system would, not from a link to it.
     base = os.path.realpath(folder) if ".." in Path(name).parts else folder
     where = Path(os.path.normpath(os.path.join(base, name)))
@@ -111,8 +115,9 @@ def mesh_text(mesh: MeshReference, folder: Path | None) -> str:
             # Another drive on Windows cannot be reached by a relative path.
             text = where.as_posix()
     # Only what a line of text cannot hold as it is: line ends, blanks at either end, and what
-    # would be taken for what stands behind a path.
+    # would be taken for what stands behind a path, or for a path of Windows.
     plain = text.isprintable() and text == text.strip() and not text.startswith('"')
-    name = text if plain and not _AT_END.search(text) else json.dumps(text)
+    plain = plain and "\\" not in text and not _AT_END.search(text)
+    name = text if plain else json.dumps(text)
     sha256 = f" sha256={mesh.sha256}" if mesh.sha256 else ""
     return f"{name}{sha256}" + (f" vertices={mesh.vertices}" if mesh.vertices else "")

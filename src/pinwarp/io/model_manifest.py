@@ -10,6 +10,7 @@ from pathlib import Path
 from pinwarp.core.errors import FileFormatError
 from pinwarp.io.csv_cells import formula_unquoted, shortened
 from pinwarp.io.csv_text import Row
+from pinwarp.io.file_names import with_slashes
 from pinwarp.io.manifest import checked_name, manifest_rows, subjects_of
 
 MESH = "_mesh"
@@ -157,8 +158,8 @@ def _subject(row: Row, columns: Sequence[str], folder: Path) -> ModelSubject:
             bodies.append(
                 BodyFiles(
                     column,
-                    Path(os.path.abspath(folder / cells[column])),
-                    Path(os.path.abspath(folder / mesh)) if mesh else None,
+                    Path(os.path.abspath(folder / with_slashes(cells[column], folder))),
+                    Path(os.path.abspath(folder / with_slashes(mesh, folder))) if mesh else None,
                 )
             )
     if not bodies:

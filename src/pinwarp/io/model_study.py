@@ -11,6 +11,7 @@ from pinwarp.core.errors import FileFormatError, NewerFileError
 from pinwarp.io.atomic import write_atomically
 from pinwarp.io.csv_cells import YES_NO, as_sentence, formula_unquoted, shortened
 from pinwarp.io.csv_text import Row, csv_line, rows_of
+from pinwarp.io.file_names import with_slashes
 from pinwarp.io.text import lines_of, read_text, refuse_binary
 
 VERSION = 1
@@ -187,7 +188,7 @@ def _header(path: Path, lines: list[str]) -> tuple[Path, str]:
             named = _MODEL.fullmatch(value)
             if named is None or model is not None:
                 raise FileFormatError(path, f"It names its model badly. {_CORRECT}", number)
-            model = Path(os.path.abspath(path.parent / Path(named["path"])))
+            model = Path(os.path.abspath(path.parent / with_slashes(named["path"], path.parent)))
             sha256 = named["sha256"] or ""
         elif not value.isascii() or not value.isdigit():
             raise FileFormatError(path, f"It is of no version that is known. {_CORRECT}", number)
@@ -233,5 +234,5 @@ def _body(cells: dict[str, str], folder: Path, line: int) -> BodyRow:
     enabled = YES_NO.get(cells.get("enabled", "").lower())
     if enabled is None:
         raise ValueError(f"enabled is {shortened(cells['enabled'])} and neither 1 nor 0")
-    session = Path(os.path.abspath(folder / Path(cells["session"])))
+    session = Path(os.path.abspath(folder / with_slashes(cells["session"], folder)))
     return BodyRow(cells["body"], session, rule == TURN, enabled, cells.get("note", ""), line)
