@@ -200,7 +200,8 @@ def test_the_lines_are_seen(user):
     user.trigger("grid_box")
     pictures.append(viewport.grab().toImage())
     place = grid(user, DESTINATION)[0, 0]
-    ((x, y),) = viewport.project(np.array([place]))
+    # Pixels of the picture, whatever the screen's are.
+    ((x, y),) = viewport.project(np.array([place])) * pictures[0].devicePixelRatio()
     around = [(round(x) + i, round(y) + j) for i in range(-3, 4) for j in range(-3, 4)]
     before, after = ([x.pixelColor(*at).lightness() for at in around] for x in pictures)
     assert (np.array(before) - after).max() > 30

@@ -606,6 +606,8 @@ def test_an_empty_table_says_what_to_do(user):
     user.editor.commit(edits.import_pairs(user.session, [landmark("a", 1)]), "Import")
     user.settle()
     filled = table.viewport().grab().toImage()
-    room = table.viewport().rect()
-    middle = [(x, room.height() // 4 + y) for x in range(room.width()) for y in range(-20, 20)]
+    # Pixels of the picture, whatever the screen's are.
+    reach = round(20 * filled.devicePixelRatio())
+    row = filled.height() // 4
+    middle = [(x, row + y) for x in range(filled.width()) for y in range(-reach, reach)]
     assert any(empty.pixelColor(x, y) != filled.pixelColor(x, y) for x, y in middle)
