@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -321,9 +322,14 @@ def test_a_search_and_an_index_are_stopped_at_any_checkpoint(monkeypatch, thread
 
     searched = []
     search = loops.closest_triangles
-    monkeypatch.setattr(
-        loops, "closest_triangles", lambda *given: (searched.append(1), search(*given))
-    )
+
+    def slowly(*given):
+        # So that who is to be told has a turn before all is done, on a busy machine too.
+        time.sleep(0.005)
+        searched.append(1)
+        search(*given)
+
+    monkeypatch.setattr(loops, "closest_triangles", slowly)
     with pytest.raises(Cancelled):
         index.distances(places, stops)
     assert len(searched) < 40
