@@ -500,8 +500,9 @@ def test_a_stand_in_is_coloured_like_the_mesh_it_stands_for(large):
     vertices = large.session.mesh(SOURCE).vertices
     stand_in = large.window.viewports[SOURCE].surface.stand_in
     for row in picked:
-        nearest = np.argmin(np.linalg.norm(vertices - stand_in.vertices[row], axis=1))
-        assert coarse[row] == all_levels[nearest]
+        away = np.linalg.norm(vertices - stand_in.vertices[row], axis=1)
+        # Of two that are as near either will do.
+        assert coarse[row] in all_levels[away <= away.min() * (1 + 1e-6)]
     viewport.set_orbiting(True)
     assert is_coloured(large, "overlay stand-in")
     assert viewport.actors["overlay stand-in"].GetVisibility()

@@ -97,7 +97,7 @@ def test_meshes_in_different_units_are_a_remark_of_check_and_report(sample: Sess
 def test_sizes_that_no_unit_explains_have_no_way_to_be_scaled(sample: Session) -> None:
     (found,) = different_units(scale_side(sample, Side.SOURCE, 1e-6))
     assert found.ways == ()
-    assert found.sentence.endswith("across.")
+    assert found.sentence.endswith("across, in their own numbers.")
 
 
 def test_a_check_is_flagged_and_says_so_first(sample: Session) -> None:
