@@ -384,8 +384,10 @@ def test_many_are_renamed_by_a_pattern(four):
     rename = dialog.buttons.button(dialog.buttons.StandardButton.Ok)
     assert "already a landmark called c" in dialog.problem.text()
     assert not rename.isEnabled()
+    assert not dialog.preview.topLevelItem(0).icon(1).isNull(), "not by its colour alone"
     dialog.pattern.selectAll()
     QTest.keyClicks(dialog.pattern, "p_{n:02}")
+    assert dialog.preview.topLevelItem(0).icon(1).isNull()
     assert dialog.problem.text() == ""
     assert dialog.preview.topLevelItem(2).text(1) == "p_03"
     QTest.mouseClick(rename, Qt.MouseButton.LeftButton)

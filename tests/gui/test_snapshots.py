@@ -71,8 +71,10 @@ def test_a_click_on_a_snapshot_takes_its_penalty_and_can_be_undone(user, strip):
     commit(user, 40.0)
     user.press(Qt.Key.Key_P)
     commit(user, 3.0)
+    assert "present" not in strip.tiles[0].accessibleName()
     click(user, strip.tiles[0])
     assert user.session.settings.penalty == 40
+    assert "present" in strip.tiles[0].accessibleName()
     user.trigger("undo")
     assert user.session.settings.penalty == 3
 

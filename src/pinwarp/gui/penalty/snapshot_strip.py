@@ -151,9 +151,12 @@ class SnapshotTile(QFrame):
         self.words.setText(f'<span style="color: {colour.name()}">{"<br>".join(lines)}</span>')
         role = QPalette.ColorRole.Highlight if is_present else QPalette.ColorRole.Mid
         base = self.palette().color(QPalette.ColorRole.Base).name()
+        # Not by colour alone: the frame of the present one is twice as thick, in the same room.
+        thick = 2 if is_present else 1
         self.setStyleSheet(
             f"#tile {{ background: {base}; border-radius: 4px;"
-            f" border: 1px solid {self.palette().color(role).name()}; }}"
+            f" border: {thick}px solid {self.palette().color(role).name()};"
+            f" padding: {2 - thick}px; }}"
         )
         still = f" ({changed} since)" if changed else ""
         left_out = shot.leave_one_out
@@ -161,7 +164,8 @@ class SnapshotTile(QFrame):
             f"Click to take the penalty {shot.title}{still}"
             + (f"\nRMS leave-one-out error {shot.ruler.text(left_out)}" if left_out else "")
         )
-        self.setAccessibleName(f"Snapshot: {shot.title}")
+        present = ", the present penalty" if is_present else ""
+        self.setAccessibleName(f"Snapshot: {shot.title}{present}")
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """Ask for this penalty."""

@@ -25,6 +25,7 @@ from qtpy.QtWidgets import (
 
 from pinwarp.core.errors import PinwarpError
 from pinwarp.gui.style import theme
+from pinwarp.gui.style.icons import icon
 from pinwarp.session.naming import names_by_pattern, names_by_replacing
 
 
@@ -138,3 +139,4 @@ class RenameDialog(QDialog):
             item.setText(1, new_name)
             wrong = new_name in doubled or bool(problem and f" {new_name}:" in problem)
             item.setForeground(1, QBrush(theme.warning_text_colour()) if wrong else QBrush())
+            item.setIcon(1, icon("warning", theme.WARNING_COLOUR) if wrong else QIcon())
