@@ -11,7 +11,7 @@ import pytest
 
 
 @pytest.mark.parametrize("ratio", [1.5, 2])
-def test_the_mouse_meets_what_is_seen_on_screens_with_small_pixels(qapp, ratio):
+def test_the_mouse_meets_what_is_seen_on_screens_with_small_pixels(ratio):
     done = subprocess.run(
         [sys.executable, "-m", "tests.gui.scaled_window"],
         env={**os.environ, "QT_SCALE_FACTOR": str(ratio)},
