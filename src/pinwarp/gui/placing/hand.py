@@ -233,10 +233,10 @@ class Hand(Capability):
             return
         if self._is_locked() or not self.first_seen.is_seen(ghost.name, ghost.side, ghost.position):
             return
+        # What was said of a view that has turned is over; what is said of the next is not.
+        self.refused.emit("")
         session = edits.move(self._editor.committed, ghost.name, ghost.side, ghost.position)
         self._placed(session, f"Accept {ghost.name}", ghost.name, ghost.side)
-        # What was said of a view that has turned is over.
-        self.refused.emit("")
 
     def _tell_turned(self, name: str) -> None:
         self.refused.emit(
