@@ -17,7 +17,7 @@ from pinwarp.core.findings import FindingKind
 from pinwarp.core.landmarks import Side, as_position, positions
 from pinwarp.core.maps import MapKind
 from pinwarp.gui.maps.presenter import MAP_ACTIONS
-from pinwarp.gui.scene.drawables import Badge, Colouring, FoldedSurface, Ghost, Star
+from pinwarp.gui.scene.drawables import Badge, Colouring, FoldedSurface, Ghost, Star, WorkWords
 from pinwarp.gui.style.colour_scale import ColourScale
 from pinwarp.io.samples import assets_folder
 from pinwarp.session import edits
@@ -561,12 +561,25 @@ def wait_for_the_bar(user):
     """Choose the map that takes for ever, and wait until the panel says that it works."""
     work = user.window.parts.maps.panel.work
     user.window.actions_by_key["map_distance"].trigger()
-    user.qtbot.waitUntil(lambda: there(user).drawn(Badge) is not None)
+    user.qtbot.waitUntil(lambda: there(user).drawn(WorkWords) is not None)
     assert not work.isHidden()
     user.qtbot.waitUntil(lambda: work.bar.value() > 40)
-    user.qtbot.waitUntil(lambda: f"{work.bar.value()} %" in there(user).drawn(Badge).words)
-    assert there(user).drawn(Badge).words.startswith("Distance to the destination: ")
+    user.qtbot.waitUntil(lambda: f"{work.bar.value()} %" in there(user).drawn(WorkWords).words)
+    assert there(user).drawn(WorkWords).words.startswith("Distance to the destination: ")
     return work
+
+
+def test_what_a_held_key_shows_and_what_is_being_made_are_said_at_once(sample, endless):
+    sample.editor.commit(edits.set_penalty(sample.session, 40.0), "Change penalty")
+    sample.settle()
+    wait_for_the_bar(sample)
+    QTest.keyPress(sample.window, Qt.Key.Key_B)
+    view = there(sample)
+    sample.qtbot.waitUntil(lambda: None not in (view.drawn(Badge), view.drawn(WorkWords)))
+    QTest.keyRelease(sample.window, Qt.Key.Key_B)
+    sample.press(Qt.Key.Key_Escape)
+    sample.settle()
+    assert view.drawn(Badge) is view.drawn(WorkWords) is None
 
 
 def test_a_slow_map_says_how_far_it_is_and_is_stopped_by_esc_or_its_button(sample, endless):
@@ -577,7 +590,7 @@ def test_a_slow_map_says_how_far_it_is_and_is_stopped_by_esc_or_its_button(sampl
     assert len(endless) == 1
     assert sample.editor.selection.names, "Esc stops what is slow before it deselects"
     assert work.isHidden()
-    assert there(sample).drawn(Badge) is None
+    assert there(sample).drawn(WorkWords) is None
     sample.press(Qt.Key.Key_Escape)
     assert not sample.editor.selection.names
     wait_for_the_bar(sample)

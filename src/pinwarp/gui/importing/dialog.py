@@ -90,8 +90,10 @@ class ImportDialog(QDialog):
         self._lay_out()
         self.buttons.accepted.connect(self.accept)
         self.buttons.rejected.connect(self.reject)
-        # Once it stands in the dialog: there was no focus to be had before.
-        self.buttons.button(kinds.Ok).setFocus()
+        # Once it stands in the dialog, which would not know before what Return is for.
+        import_it = self.buttons.button(kinds.Ok)
+        import_it.setDefault(True)
+        import_it.setFocus()
         self._show()
         layout = self.layout()
         if not arriving.landmarks and layout is not None:
@@ -133,7 +135,6 @@ class ImportDialog(QDialog):
             button.setIcon(QIcon())
         button = self.buttons.button(QDialogButtonBox.StandardButton.Ok)
         button.setText("Import")
-        button.setDefault(True)
 
     def _lay_out(self) -> None:
         reading = self._arriving.reading

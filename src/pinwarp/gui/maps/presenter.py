@@ -18,13 +18,7 @@ from pinwarp.gui.maps.panel import MapPanel
 from pinwarp.gui.maps.words import MENU_WORDS, TITLES, note_of, title_of
 from pinwarp.gui.placing.ghosts import Ghosts
 from pinwarp.gui.placing.hand import Hand
-from pinwarp.gui.scene.drawables import (
-    Badge,
-    Colouring,
-    Drawable,
-    Legend,
-    Star,
-)
+from pinwarp.gui.scene.drawables import Colouring, Drawable, Legend, Star, WorkWords
 from pinwarp.gui.style.colour_scale import ColourScale
 from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.gui.views.scenes import Scenes
@@ -350,7 +344,7 @@ class MapPresenter(Capability):
                 yield Star(suggestion, self._ruler.text(suggestion.deviation, 2))
             return
         if self.panel.work.words:
-            yield Badge(self.panel.work.words)
+            yield WorkWords(self.panel.work.words)
         surveyed, scale = self._surveyed, self._scale()
         # While things move the overlay has moved on from under its colours.
         if surveyed is not None and is_of(surveyed.request.result, self._resting):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from qtpy.QtCore import QPointF, QRectF, Qt
 from qtpy.QtGui import QColor, QFont, QPainter, QPen
 
-from pinwarp.gui.scene.drawables import Badge, Caption, Hint, NextClick, ToolWords
+from pinwarp.gui.scene.drawables import Badge, Caption, Hint, NextClick, ToolWords, WorkWords
 from pinwarp.gui.style import theme
 
 _MARGIN = 12
@@ -80,8 +80,8 @@ def paint_tool_words(painter: QPainter, tool: ToolWords, view: QRectF) -> None:
     _paint_plate(painter, plate, flags, tool.words)
 
 
-def paint_badge(painter: QPainter, badge: Badge, view: QRectF) -> None:
-    """Say in the upper right corner that something unusual is shown."""
+def paint_badge(painter: QPainter, badge: Badge | WorkWords, view: QRectF) -> None:
+    """Say in the upper right corner that something unusual is shown, or being made."""
     metrics, margin = painter.fontMetrics(), 10
     room = round(view.width() - 2 * margin - 20)
     words = metrics.elidedText(badge.words, Qt.TextElideMode.ElideRight, room)

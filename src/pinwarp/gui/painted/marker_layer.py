@@ -60,6 +60,7 @@ from pinwarp.gui.scene.drawables import (
     Slides,
     Star,
     ToolWords,
+    WorkWords,
 )
 from pinwarp.gui.scene.model_drawables import ModelElements
 from pinwarp.gui.scene.projection import Projection
@@ -117,6 +118,7 @@ class MarkerLayer(QWidget):
             Ghost: ghosts.paint_next,
             NextClick: self._paint_next_click,
             Badge: self._paint_badge,
+            WorkWords: self._paint_work_words,
             ToolWords: self._paint_tool_words,
         }
         self.painted_for: object = None
@@ -301,6 +303,10 @@ class MarkerLayer(QWidget):
 
     def _paint_badge(self, painter: QPainter, badge: Badge) -> None:
         paint_badge(painter, badge, QRectF(self.rect()))
+
+    def _paint_work_words(self, painter: QPainter, work: WorkWords) -> None:
+        if self._scene.of(Badge) is None:
+            paint_badge(painter, work, QRectF(self.rect()))
 
     def _paint_counterpart(self, painter: QPainter, counterpart: Counterpart) -> None:
         """Paint a ring around the landmark that the other side's ghost stands for."""

@@ -378,8 +378,15 @@ class Badge:
     words: str
 
 
+@dataclass(frozen=True)
+class WorkWords:
+    """Words in the place of a badge, where there is none, that say what is being made."""
+
+    words: str
+
+
 Rendered = Bone | Cut | Motion | Overlay | Colouring | FoldedSurface | GridLines
 Semilandmarks = Dots | Paths | Handles | Slides
 Signs = Markers | Arrows | Ghost | OtherGhosts | Counterpart | Star | Semilandmarks | ModelElements
-Painted = Signs | Legend | Caption | ScaleBar | Hint | NextClick | Badge | ToolWords
+Painted = Signs | Legend | Caption | ScaleBar | Hint | NextClick | Badge | WorkWords | ToolWords
 Drawable = Rendered | Painted
