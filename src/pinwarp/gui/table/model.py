@@ -24,34 +24,20 @@ from pinwarp.session.session import Session
 from pinwarp.session.warp.pair_names import pair_names
 from pinwarp.session.warp.result import WarpInputs, WarpResult
 
+_ROLE, _FLAG = Qt.ItemDataRole, Qt.ItemFlag
 # The role under which a cell says how large its number is beside the largest of its column.
-SHARE = Qt.ItemDataRole.UserRole
+SHARE = _ROLE.UserRole
 # Numbers without a column: tips ask for them when they are shown.
 _ONLY_TOLD = ("standardised", "spread")
 _ROWS_MIME = "application/x-pinwarp-landmarks"
 # Qt asks for several more, cell by cell, each time that one is painted.
-_TOLD = frozenset(
-    map(
-        int,
-        (
-            Qt.ItemDataRole.DisplayRole,
-            Qt.ItemDataRole.EditRole,
-            Qt.ItemDataRole.DecorationRole,
-            Qt.ItemDataRole.CheckStateRole,
-            Qt.ItemDataRole.ForegroundRole,
-            Qt.ItemDataRole.TextAlignmentRole,
-            Qt.ItemDataRole.ToolTipRole,
-            SHARE,
-        ),
-    )
-)
+_TOLD = {_ROLE.DisplayRole, _ROLE.EditRole, _ROLE.DecorationRole, _ROLE.CheckStateRole}
+_TOLD |= {_ROLE.ForegroundRole, _ROLE.TextAlignmentRole, _ROLE.ToolTipRole, SHARE}
 # Made once: Qt asks for them cell by cell whenever the selection changes.
-_BETWEEN_ROWS = Qt.ItemFlag.ItemIsDropEnabled
-_PLAIN_CELL = (
-    Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable | Qt.ItemFlag.ItemIsDragEnabled
-)
-_TYPED_CELL = _PLAIN_CELL | Qt.ItemFlag.ItemIsEditable
-_TICKED_CELL = _TYPED_CELL | Qt.ItemFlag.ItemIsUserCheckable
+_BETWEEN_ROWS = _FLAG.ItemIsDropEnabled
+_PLAIN_CELL = _FLAG.ItemIsEnabled | _FLAG.ItemIsSelectable | _FLAG.ItemIsDragEnabled
+_TYPED_CELL = _PLAIN_CELL | _FLAG.ItemIsEditable
+_TICKED_CELL = _TYPED_CELL | _FLAG.ItemIsUserCheckable
 
 
 class LandmarkModel(QAbstractTableModel):
@@ -89,8 +75,7 @@ class LandmarkModel(QAbstractTableModel):
             name = landmark.name
             found = {key: values[name] for key, values in self._values.items() if name in values}
             row = Row(landmark, found, self._findings.get(name, ()), self.rulers)
-            self._rows[number] = row
-        return row
+        return self._rows.setdefault(number, row)
 
     def _forget_rows(self) -> None:
         """Put together anew what the cells and the order of the rows are made from."""
@@ -287,15 +272,15 @@ class LandmarkModel(QAbstractTableModel):
             return None
         column = COLUMNS[section]
         match role:
-            case Qt.ItemDataRole.DisplayRole:
+            case _ROLE.DisplayRole:
                 return self.title(section)
-            case Qt.ItemDataRole.AccessibleTextRole:
+            case _ROLE.AccessibleTextRole:
                 return column.title
-            case Qt.ItemDataRole.DecorationRole if column.header_icon:
+            case _ROLE.DecorationRole if column.header_icon:
                 return icon(column.header_icon)
-            case Qt.ItemDataRole.TextAlignmentRole:
+            case _ROLE.TextAlignmentRole:
                 return _alignment(column)
-            case Qt.ItemDataRole.ToolTipRole:
+            case _ROLE.ToolTipRole:
                 return f"{column.tip}\nA click sorts; a third one brings back the order"
         return None
 
@@ -317,19 +302,19 @@ class LandmarkModel(QAbstractTableModel):
             return None
         row, column = self.row(index.row()), COLUMNS[index.column()]
         match role:
-            case Qt.ItemDataRole.DisplayRole:
+            case _ROLE.DisplayRole:
                 return column.text(row)
-            case Qt.ItemDataRole.EditRole:
+            case _ROLE.EditRole:
                 return (column.edit_text or column.text)(row)
-            case Qt.ItemDataRole.DecorationRole if column.icon is not None:
+            case _ROLE.DecorationRole if column.icon is not None:
                 return column.icon(row)
-            case Qt.ItemDataRole.CheckStateRole if column.checked is not None:
+            case _ROLE.CheckStateRole if column.checked is not None:
                 return _check_state(column.checked(row))
-            case Qt.ItemDataRole.ForegroundRole if not row.landmark.enabled:
+            case _ROLE.ForegroundRole if not row.landmark.enabled:
                 return QColor(theme.STATE_COLOURS[LandmarkState.DISABLED])
-            case Qt.ItemDataRole.TextAlignmentRole:
+            case _ROLE.TextAlignmentRole:
                 return _alignment(column)
-            case Qt.ItemDataRole.ToolTipRole:
+            case _ROLE.ToolTipRole:
                 return (column.cell_tip or column.text)(row)
             case _ if role == SHARE and column.has_bar:
                 longest = self._largest.get(column.key)
@@ -342,12 +327,12 @@ class LandmarkModel(QAbstractTableModel):
         if not index.isValid():
             return False
         row, column = self.row(index.row()), COLUMNS[index.column()]
-        if role == Qt.ItemDataRole.EditRole and column.edit is not None:
+        if role == _ROLE.EditRole and column.edit is not None:
             if str(value) == (column.edit_text or column.text)(row):
                 return False
             self.edit_requested.emit(index.column(), row.landmark.name, str(value))
             return True
-        if role == Qt.ItemDataRole.CheckStateRole and column.checked is not None:
+        if role == _ROLE.CheckStateRole and column.checked is not None:
             on = Qt.CheckState(value) == Qt.CheckState.Checked
             self.enable_requested.emit(row.landmark.name, on)
             return True
@@ -356,7 +341,7 @@ class LandmarkModel(QAbstractTableModel):
     def problem(self, index: QModelIndex, text: str) -> str:
         """Return why a text cannot stand in a cell, or nothing."""
         edit = COLUMNS[index.column()].edit
-        if edit is not None and text != self.data(index, Qt.ItemDataRole.EditRole):
+        if edit is not None and text != self.data(index, _ROLE.EditRole):
             try:
                 edit(self._session, self._landmarks[index.row()].name, text, self.rulers)
             except PinwarpError as error:
