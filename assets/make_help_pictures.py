@@ -153,14 +153,21 @@ def of_import(studio: Studio) -> None:
         ]
         write_landmarks(path, metres, Side.DESTINATION)
 
+        taken = []
+
         def grab() -> None:
             dialog = QApplication.activeModalWidget()
+            # It asks once the file was read and looked at, on a busy machine late.
+            if dialog is None or not dialog.isVisible():
+                QTimer.singleShot(500, studio.window, grab)
+                return
             keep(dialog.grab(), "import")
+            taken.append(dialog)
             dialog.reject()
 
-        QTimer.singleShot(2500, studio.window, grab)
         studio.window.parts.imports.bring_in(path, Side.DESTINATION)
-        wait(3000)
+        QTimer.singleShot(2500, studio.window, grab)
+        wait_until(lambda: bool(taken))
         studio.settle()
 
 
