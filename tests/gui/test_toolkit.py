@@ -8,6 +8,11 @@ import sys
 from qtpy.QtCore import QPointF
 
 
+def run_apart(code):
+    """Run some lines in an interpreter of their own, which has loaded nothing yet."""
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
 def test_calls_into_qt_lose_no_reference_to_none(qapp):
     """PySide 6.12.0 did on Python 3.11: the program died in the middle of long work."""
     point = QPointF()
@@ -30,7 +35,7 @@ def test_the_window_is_there_before_what_only_later_work_needs():
         "    'distributed', 'imageio_ffmpeg', 'opensim', 'rich', 'typer'}\n"
         "assert not late & set(sys.modules), late & set(sys.modules)"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+    run_apart(code)
 
 
 def test_a_chart_still_finds_its_figures_and_a_script_finds_matplotlib():
@@ -44,7 +49,7 @@ def test_a_chart_still_finds_its_figures_and_a_script_finds_matplotlib():
         "from matplotlib.backends.backend_agg import FigureCanvasAgg\n"
         "assert type(charts.FigureCanvasAgg(figure)) is FigureCanvasAgg"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+    run_apart(code)
 
 
 def test_what_asks_for_figures_at_once_has_them():
@@ -57,4 +62,4 @@ def test_what_asks_for_figures_at_once_has_them():
         "import matplotlib.pyplot as later\n"
         "assert later.subplots is plt.subplots"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+    run_apart(code)
