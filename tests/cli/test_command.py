@@ -12,7 +12,7 @@ import pytest
 import pinwarp
 from pinwarp.io.samples import sample_session
 
-HEAVY = {"qtpy", "PySide6", "pyvistaqt", "pyvista", "vtk", "vtkmodules", "matplotlib"}
+HEAVY = {"qtpy", "PySide6", "pyvista", "vtk", "vtkmodules", "matplotlib"}
 
 
 def run(*arguments, display=True, **environment):

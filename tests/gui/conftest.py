@@ -13,7 +13,7 @@ from qtpy.QtCore import QEvent, QPoint, QPointF, QSettings, Qt, QTimer
 from qtpy.QtTest import QTest
 from qtpy.QtWidgets import QApplication
 from tests.gui.guesses import Guesser
-from vtkmodules.vtkCommonCore import vtkObjectBase
+from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow, vtkRenderWindowInteractor
 
 from pinwarp.core.landmarks import Side
 from pinwarp.gui.app import make_application
@@ -278,14 +278,13 @@ class Driver:
         self.settle()
 
 
-RENDERING = ("vtkGenericOpenGLRenderWindow", "vtkGenericRenderWindowInteractor", "Renderer")
+RENDERING = (vtkRenderWindow, vtkRenderWindowInteractor, vtkRenderer)
 
 
 def rendering_objects() -> list[str]:
     """The VTK render windows, renderers and interactors that are alive, of this test alone."""
     gc.collect()
-    names = (type(thing).__name__ for thing in gc.get_objects() if isinstance(thing, vtkObjectBase))
-    return [name for name in names if name in RENDERING]
+    return [type(x).__name__ for x in gc.get_objects() if isinstance(x, RENDERING)]
 
 
 @pytest.fixture

@@ -42,7 +42,7 @@ def large(user, tmp_path, monkeypatch):
 
 def drawn(viewport):
     """The names of what is visible."""
-    return {name for name, actor in viewport.actors.items() if actor.GetVisibility()}
+    return {name for name, actor in viewport.renderer.actors.items() if actor.GetVisibility()}
 
 
 def test_the_stand_in_keeps_the_shape(large):

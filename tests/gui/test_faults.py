@@ -60,8 +60,8 @@ def test_a_part_that_folds_as_a_whole_is_drawn_without_a_rim(spheres):
     view = spheres.window.viewports[DESTINATION]
     small = (two_spheres().vertices[two_spheres().faces][:, :, 2] > 90).all(axis=1)
     assert len(view.drawn(FoldedSurface).faces) == np.count_nonzero(small)
-    assert {"folds", "hidden folds"} <= set(view.actors)
-    assert "rim of the folds" not in view.actors
+    assert {"folds", "hidden folds"} <= set(view.renderer.actors)
+    assert "rim of the folds" not in view.renderer.actors
     assert "fold" in spheres.window.parts.findings.fold_note.text()
 
 
@@ -88,11 +88,11 @@ def test_a_rim_goes_when_a_fold_without_one_takes_its_place(spheres):
     swapped = edits.move(swapped, "p10", DESTINATION, whole.landmark("p6").destination)
     spheres.editor.commit(swapped, "Exchange")
     spheres.settle()
-    assert "rim of the folds" in view.actors
+    assert "rim of the folds" in view.renderer.actors
     spheres.trigger("undo")
     spheres.settle()
-    assert "folds" in view.actors
-    assert "rim of the folds" not in view.actors
+    assert "folds" in view.renderer.actors
+    assert "rim of the folds" not in view.renderer.actors
 
 
 @pytest.mark.parametrize(

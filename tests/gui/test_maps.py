@@ -48,7 +48,7 @@ def choose(user, kind):
 
 def overlay(user, name="overlay"):
     """The actor of the warped source."""
-    return there(user).actors[name]
+    return there(user).renderer.actors[name]
 
 
 def is_coloured(user, name="overlay"):
@@ -65,7 +65,7 @@ def levels(user, name="overlay"):
 
 def folds_drawn(user):
     """Whether folds are drawn: in the scene, and as they are rendered."""
-    rendered = "folds" in there(user).actors
+    rendered = "folds" in there(user).renderer.actors
     assert rendered == (there(user).drawn(FoldedSurface) is not None)
     return rendered
 
@@ -505,7 +505,7 @@ def test_a_stand_in_is_coloured_like_the_mesh_it_stands_for(large):
         assert coarse[row] in all_levels[away <= away.min() * (1 + 1e-6)]
     viewport.set_orbiting(True)
     assert is_coloured(large, "overlay stand-in")
-    assert viewport.actors["overlay stand-in"].GetVisibility()
+    assert viewport.renderer.actors["overlay stand-in"].GetVisibility()
     viewport.set_orbiting(False)
 
 

@@ -320,7 +320,7 @@ def test_many_requests_in_one_turn_render_once(user):
     before = viewport.renders
     for _ in range(10):
         viewport.camera.Azimuth(1)
-        viewport.render()
+        viewport.update()
         viewport.update()
     user.qtbot.wait(50)
     assert viewport.renders == before + 1

@@ -111,12 +111,12 @@ def test_the_overlay_can_be_hidden_and_faded(user, panel):
 
     viewport = user.window.viewports[Side.DESTINATION]
     user.press(Qt.Key.Key_W)
-    assert not viewport.actors["overlay"].GetVisibility()
+    assert not viewport.renderer.actors["overlay"].GetVisibility()
     assert not user.window.parts.overlay.opacity.isEnabled()
     user.press(Qt.Key.Key_W)
     slider = user.window.parts.overlay.opacity
     user.drag(slider, QPoint(slider.width() // 2, 8), QPoint(4, 8))
-    assert viewport.actors["overlay"].prop.opacity < 0.3
+    assert viewport.renderer.actors["overlay"].prop.opacity < 0.3
 
 
 def test_another_basis_is_chosen_beside_the_penalty_and_undone(user, panel):

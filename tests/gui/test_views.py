@@ -378,8 +378,8 @@ def test_shift_w_draws_the_bones_as_edges_and_back(user):
     for style in ("Wireframe", "Surface"):
         user.press(Qt.Key.Key_W, Qt.KeyboardModifier.ShiftModifier)
         for viewport in user.window.viewports.values():
-            assert viewport.actors["bone"].prop.style == style
-    assert user.window.viewports[DESTINATION].actors["overlay"].prop.style == "Surface"
+            assert viewport.renderer.actors["bone"].prop.style == style
+    assert user.window.viewports[DESTINATION].renderer.actors["overlay"].prop.style == "Surface"
 
 
 def test_the_cross_section_lets_a_click_through_to_the_inside(user):
@@ -403,8 +403,8 @@ def test_the_cross_section_lets_a_click_through_to_the_inside(user):
     assert viewport.section.plane.GetNormal() == before
     user.press(Qt.Key.Key_X)
     assert viewport.section is None
-    assert viewport.actors["bone"].mapper.GetClippingPlanes() is None or (
-        viewport.actors["bone"].mapper.GetClippingPlanes().GetNumberOfItems() == 0
+    assert viewport.renderer.actors["bone"].mapper.GetClippingPlanes() is None or (
+        viewport.renderer.actors["bone"].mapper.GetClippingPlanes().GetNumberOfItems() == 0
     )
 
 
@@ -424,7 +424,7 @@ def test_landmarks_on_the_part_that_is_cut_away_are_faint_and_cannot_be_grabbed(
 
 def test_the_overlay_is_cut_too_and_its_inside_is_drawn(user):
     user.open_sample()
-    overlay = user.window.viewports[DESTINATION].actors["overlay"]
+    overlay = user.window.viewports[DESTINATION].renderer.actors["overlay"]
     assert overlay.prop.culling == "back"
     user.press(Qt.Key.Key_X)
     assert overlay.mapper.GetClippingPlanes().GetNumberOfItems() == 1

@@ -10,8 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import platformdirs
-from qtpy.QtCore import QEvent, QEventLoop, QSettings, Qt, QTimer, Signal
-from qtpy.QtGui import QSurfaceFormat
+from qtpy.QtCore import QEvent, QEventLoop, QSettings, QTimer, Signal
 from qtpy.QtWidgets import QApplication
 from threadpoolctl import threadpool_limits
 
@@ -20,7 +19,6 @@ from pinwarp.core.errors import words_of
 from pinwarp.core.landmarks import Side
 from pinwarp.core.words import some_of
 from pinwarp.gui.files.documents import Opening
-from pinwarp.gui.views.fast_view import default_format
 from pinwarp.gui.window.main_window import MainWindow
 from pinwarp.gui.window.text_size import remembered_size, write_in
 from pinwarp.gui.window.window_dialogs import WindowDialogs
@@ -96,14 +94,10 @@ class Application(QApplication):
 
 
 def make_application() -> Application:
-    """Return the one application, set up for VTK."""
+    """Return the one application, set up for pinwarp."""
     existing = QApplication.instance()
     if isinstance(existing, Application):
         return existing
-    # Else a view moved into a floating dock loses its context and crashes.
-    QApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
-    # The shared context must have the format that each view will ask for.
-    QSurfaceFormat.setDefaultFormat(default_format())
     application = Application(["pinwarp"])
     application.setApplicationName("pinwarp")
     # By this a desktop knows which of its entries the window belongs to.

@@ -77,7 +77,7 @@ def warm_up(window: MainWindow, settle: Callable[[], None]) -> None:
         )
         settle()
         for viewport in window.viewports.values():
-            viewport.grabFramebuffer()
+            viewport.picture()
     editor.look(
         map=before.map,
         section=before.section,

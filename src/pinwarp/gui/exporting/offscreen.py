@@ -15,12 +15,10 @@ import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
 from qtpy.QtCore import QRectF
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
-from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.views.canvas import Canvas
+from pinwarp.gui.views.fast_view import read_pixels
 
 # Larger tiles hold up the window, smaller ones draw every triangle more often.
 TILE = 512
@@ -141,7 +139,7 @@ class Offscreen:
                 (height - 2 * top - down - below) / down,
             )
             window.Render()
-            yield Tile(left, top, _read(window, across, down), done / len(corners))
+            yield Tile(left, top, read_pixels(window, across, down), done / len(corners))
 
     def close(self) -> None:
         """Let go of the graphics."""
@@ -154,12 +152,3 @@ class Offscreen:
 def _share(length: int, most: int) -> int:
     """Return the length of equal parts that are no longer than allowed."""
     return math.ceil(length / math.ceil(length / most))
-
-
-def _read(window: vtkRenderWindow, width: int, height: int) -> Pixels:
-    colours = vtkUnsignedCharArray()
-    window.GetRGBACharPixelData(0, 0, width - 1, height - 1, 0, colours, 0)
-    if colours.GetNumberOfTuples() != width * height:
-        raise MemoryError("The graphics could not render a picture of this size.")
-    # VTK begins at the lower edge.
-    return np.ascontiguousarray(vtk_to_numpy(colours).reshape(height, width, 4)[::-1])

@@ -220,7 +220,7 @@ class Snapshots(Capability):
 
 def picture_of(canvas: Canvas) -> QImage:
     """Return a small picture of the bones on a canvas, without the signs above them."""
-    image = canvas.grabFramebuffer()
+    image = canvas.picture()
     ratio = image.width() / max(1, canvas.width())
     wanted = _around_the_bone(canvas)
     cut = QRect(*(round(ratio * x) for x in wanted.getRect()))

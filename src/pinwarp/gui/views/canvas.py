@@ -71,20 +71,25 @@ class Canvas(SightedView):
     def __init__(self, side: Side, surfaces: Surfaces, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.side = side
-        self._stage = DrawnScene(self, side, surfaces)
+        self._stage = DrawnScene(self.plotter, side, surfaces)
         self.layer = MarkerLayer(self, self)
         self.map_legend = PaintedLegend(self)
         self.layer.give_way_to(self.map_legend)
         self.file_notes = FileNotes(self)
         self._full_frame_seconds = 0.0
         self._orbiting = False
+        self._is_dark: bool | None = None
         self.set_dark(False)
         self.setMinimumSize(160, 160)
 
     def set_dark(self, dark: bool) -> None:
         """Put the bones before a dark background, or before a light one."""
+        if dark is self._is_dark:
+            return
+        self._is_dark = dark
         bottom, top = theme.backgrounds(dark)
-        self.set_background(bottom, top=top)
+        self.renderer.set_background(bottom, top=top)
+        self.update()
         self.layer.set_dark(dark)
         self.file_notes.set_dark(dark)
 
@@ -117,10 +122,7 @@ class Canvas(SightedView):
         elif was_empty and self.bone is not None:
             self.look_at_all()
         elif changed & {Overlay, GridLines}:
-            if not self.camera.is_set and Overlay in changed:
-                self.look_at_all()
-            else:
-                self.renderer.ResetCameraClippingRange()
+            self.renderer.ResetCameraClippingRange()
         if changed or moved:
             self._choose_detail()
 
@@ -190,9 +192,9 @@ class Canvas(SightedView):
         self._stage.set_coarse(self.is_coarse)
         self.update()
 
-    def paintGL(self) -> None:
+    def render_frame(self, width: int, height: int) -> None:
         """Render, and remember what a frame in full detail costs."""
-        super().paintGL()
+        super().render_frame(width, height)
         if not self.is_coarse and self.surface is not None:
             # The first frame uploads everything: the cheapest one seen tells the truth, slowly
             # forgotten in case the machine has become busier.

@@ -31,7 +31,7 @@ class SightedView(FastView):
         self.is_placing_camera = False
         self._seen: tuple[Hashable, Sight | None] = (None, None)
         mend = self.renderer.AddObserver("ResetCameraClippingRangeEvent", self._mend_depth)
-        self._vtk_observers.append((self.renderer, mend))
+        self._observers.append((self.renderer, mend))
 
     def set_pose(self, pose: Pose) -> None:
         """Put the camera somewhere; :attr:`is_placing_camera` tells that no hand moves it."""
@@ -40,15 +40,13 @@ class SightedView(FastView):
         camera.SetPosition(pose.position)
         camera.SetViewUp(pose.up)
         camera.SetParallelScale(pose.parallel_scale)
-        camera.is_set = True
         self.is_placing_camera = False
         self.renderer.ResetCameraClippingRange()
         self.update()
 
     def _mend_depth(self, *_event: object) -> None:
         """Keep a depth to draw in, also where all bones are behind the camera."""
-        # Not PyVista's property, which resets a camera that was not placed yet.
-        camera = self.renderer.GetActiveCamera()
+        camera = self.camera
         near, far = camera.GetClippingRange()
         if camera.GetParallelProjection() and -np.inf < near < far < np.inf:
             return

@@ -109,7 +109,6 @@ class Viewport(Canvas):
         self._zoom_rest.setSingleShot(True)
         self._zoom_rest.setInterval(ZOOM_REST_MS)
         self._zoom_rest.timeout.connect(lambda: self.set_orbiting(False))
-        self.iren.clear_key_event_callbacks()
         self.setAcceptDrops(True)
 
     # The mouse and the keyboard

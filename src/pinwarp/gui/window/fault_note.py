@@ -14,7 +14,7 @@ from pinwarp.gui.style import theme
 from pinwarp.gui.window.faults import Faults
 from pinwarp.version import __version__
 
-_PACKAGES = ("numpy", "scipy", "numba", "vtk", "pyvista", "pyvistaqt", "PySide6-Essentials")
+_PACKAGES = ("numpy", "scipy", "numba", "vtk", "pyvista", "PySide6-Essentials")
 
 
 class FaultNote(QPushButton):
