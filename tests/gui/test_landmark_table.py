@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import time
 import warnings
 from dataclasses import replace
 
 import pytest
-from qtpy.QtCore import QMimeData, QPoint, QPointF, QRect, Qt
+from qtpy.QtCore import QEvent, QMimeData, QObject, QPoint, QPointF, QRect, Qt
 from qtpy.QtGui import QDragEnterEvent, QDragMoveEvent, QDropEvent, QGuiApplication
 from qtpy.QtTest import QTest
 from qtpy.QtWidgets import (
@@ -104,6 +105,32 @@ def four(user):
     user.editor.replace_all(edits.remove_side(session, "c", Side.DESTINATION), None)
     user.settle()
     return TableUser(user)
+
+
+class Paints(QObject):
+    """Counts how often a widget is painted."""
+
+    def __init__(self, widget):
+        super().__init__()
+        self.count = 0
+        widget.installEventFilter(self)
+
+    def eventFilter(self, _widget, event):
+        self.count += event.type() == QEvent.Type.Paint
+        return False
+
+
+def test_figures_that_run_are_painted_ten_times_a_second_and_the_last_ones_too(four):
+    table = four.table
+    model = table.order.sourceModel()
+    paints = Paints(table.viewport())
+    begin = time.monotonic()
+    for _ in range(30):
+        QApplication.processEvents()
+        model.dataChanged.emit(model.index(0, 0), model.index(3, len(COLUMNS) - 1))
+    before, passed = paints.count, time.monotonic() - begin
+    assert before <= 2 + passed / 0.1
+    four.user.qtbot.waitUntil(lambda: paints.count > before)
 
 
 # Sorting, filtering, order

@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 from qtpy.QtCore import QPoint, Qt
-from qtpy.QtWidgets import QLineEdit
+from qtpy.QtWidgets import QLineEdit, QWidget
 
 from pinwarp.core.landmarks import Landmark, LandmarkState, Side
 
@@ -324,3 +324,27 @@ def test_many_requests_in_one_turn_render_once(user):
         viewport.update()
     user.qtbot.wait(50)
     assert viewport.renders == before + 1
+
+
+def test_what_lies_above_a_picture_is_painted_without_a_frame(user):
+    user.open_sample()
+    viewport = user.window.viewports[SOURCE]
+    user.qtbot.wait(50)
+    before = viewport.renders
+    viewport.layer.update()
+    # As the desktop asks when another window has been before this one.
+    QWidget.update(viewport)
+    user.qtbot.wait(50)
+    shown = viewport.grab().toImage().pixelColor(viewport.rect().center())
+    assert viewport.renders == before
+    assert shown == viewport.picture().pixelColor(viewport.rect().center())
+
+
+def test_a_view_that_is_closed_shows_its_last_picture(user):
+    user.open_sample()
+    viewport = user.window.viewports[SOURCE]
+    before, rest = viewport.picture().copy(), viewport.renders
+    viewport.close()
+    viewport.update()
+    assert viewport.picture() == before
+    assert (viewport.renders, viewport.graphics) == (rest, "unknown")

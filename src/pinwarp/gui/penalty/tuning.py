@@ -98,7 +98,7 @@ class PenaltyTuning(Capability):
     # What changed
 
     def _on_result(self, result: WarpResult) -> None:
-        # Each widget that changes costs a composition of the window: only the slider's is live.
+        # Of a landmark that moves the figures follow when it is dropped: only the slider's is live.
         if result.inputs.settings.penalty != self._editor.committed.settings.penalty:
             self.panel.show_result(result)
 

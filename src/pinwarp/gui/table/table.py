@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import math
+import time
+from collections.abc import Sequence
+
 from qtpy.QtCore import (
     QEvent,
     QItemSelection,
@@ -29,6 +33,8 @@ __all__ = ["LandmarkModel", "LandmarkTable"]
 _NAME, _LOCKED = column_number(NAME), column_number(LOCKED)
 _LEAST_NAME_WIDTH = 96
 _SIGN = 16
+# Figures that run are painted ten times a second: faster nobody reads.
+_READING_MS = 100
 _EMPTY_HINT = "Click the same place\non both bones"
 
 
@@ -54,6 +60,9 @@ class LandmarkTable(QTableView):
                 self.setItemDelegateForColumn(number, self._numbers)
         for cells in (self._cells, self._names):
             cells.refused.connect(self.refused)
+        self._painted_at = -math.inf
+        self._reading = QTimer(self, singleShot=True)
+        self._reading.timeout.connect(self.viewport().update)
         self._rendering = False
         self._fitting = False
         self._set_up_rows()
@@ -277,9 +286,19 @@ class LandmarkTable(QTableView):
         if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
             self._fit_columns()
 
+    def dataChanged(self, first: QModelIndex, last: QModelIndex, roles: Sequence[int] = ()) -> None:
+        """Show what has changed: at once, but of figures that run not every one."""
+        too_soon = _READING_MS - 1e3 * (time.monotonic() - self._painted_at)
+        # An open cell wants to know.
+        if too_soon <= 0 or self.state() == QAbstractItemView.State.EditingState:
+            super().dataChanged(first, last, roles)
+        elif not self._reading.isActive():
+            self._reading.start(math.ceil(too_soon))
+
     def paintEvent(self, event: QPaintEvent) -> None:
         """Say what to do where there is nothing to show."""
         super().paintEvent(event)
+        self._painted_at = time.monotonic()
         if self.order.rowCount():
             return
         hint = "No landmark matches\nthe filter" if self.order.is_filtered else _EMPTY_HINT

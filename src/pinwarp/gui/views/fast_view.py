@@ -68,7 +68,7 @@ class FastView(QWidget):
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.WheelFocus)
         plotter = pv.Plotter(off_screen=True, lighting="none")
-        # By many samples smoothing costs 3-5 times the frame in software; Qt smooths what it paints.
+        # Many samples a pixel cost 3-5 times the frame in software; Qt smooths what it paints.
         plotter.disable_anti_aliasing()
         plotter.enable_trackball_style()
         self.plotter: pv.Plotter | None = plotter
