@@ -30,6 +30,8 @@ def test_a_window_opens_without_a_warning_of_qt(user, qtlog):
 def test_the_window_is_there_before_what_only_later_work_needs():
     code = (
         "import sys, pinwarp.gui.app\n"
+        "from pinwarp.gui.views.fast_view import FastView\n"
+        "pinwarp.gui.app.make_application(), FastView().close()\n"
         "late = {'matplotlib.pyplot', 'matplotlib.figure', 'matplotlib.backend_bases', 'numba',\n"
         "    'scipy.interpolate', 'scipy.optimize', 'scipy.stats', 'vtkmodules.all', 'asyncio',\n"
         "    'distributed', 'imageio_ffmpeg', 'opensim', 'rich', 'typer'}\n"

@@ -23,7 +23,8 @@ from vtkmodules.vtkRenderingCore import vtkRenderWindow
 from pinwarp.gui.views.without_charts import without_charts
 
 with without_charts():
-    import pyvista as pv
+    # Not when the first is made: by then nobody would keep the figures out.
+    from pyvista import Plotter
 
 # Of the wheel, in eighths of a degree.
 _NOTCH = 120
@@ -67,11 +68,11 @@ class FastView(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.WheelFocus)
-        plotter = pv.Plotter(off_screen=True, lighting="none")
+        plotter = Plotter(off_screen=True, lighting="none")
         # Many samples a pixel cost 3-5 times the frame in software; Qt smooths what it paints.
         plotter.disable_anti_aliasing()
         plotter.enable_trackball_style()
-        self.plotter: pv.Plotter | None = plotter
+        self.plotter: Plotter | None = plotter
         self.renderer, self.camera = plotter.renderer, plotter.renderer.camera
         # Else PyVista would place it anew with each mesh.
         self.camera.is_set = True
