@@ -7,7 +7,9 @@ import os
 import subprocess
 import sys
 
+import numpy as np
 import pytest
+from PIL import Image
 
 import pinwarp
 from pinwarp.io.samples import sample_session
@@ -134,6 +136,17 @@ def test_a_picture_of_the_sample_is_written(tmp_path):
     assert outcome.returncode == 0, outcome.stderr
     assert path.read_bytes().startswith(b"\x89PNG")
     assert path.stat().st_size > 50_000
+
+
+def test_without_a_display_there_are_pictures_all_the_same(tmp_path):
+    path = tmp_path / "demo.png"
+    outcome = run("--demo", "--screenshot", path, display=False, XDG_CONFIG_HOME=str(tmp_path))
+    assert (outcome.returncode, outcome.stderr) == (0, "")
+    with Image.open(path) as picture:
+        assert picture.size == (1280, 800)
+        colours = np.asarray(picture.convert("RGB")).reshape(-1, 3)
+    # The bones are in it, not only a window: bone is warm, and so is nothing else.
+    assert (colours[:, 0] > colours[:, 2] + 20).mean() > 0.02
 
 
 def test_a_picture_of_a_damaged_session_fails_with_its_reason(tmp_path):

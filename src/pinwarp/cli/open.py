@@ -71,7 +71,9 @@ def make_open(open_window: OpenWindow) -> Callable[..., None]:
         demo: Annotated[bool, typer.Option("--demo", help="Open the sample bones.")] = False,
         screenshot: Annotated[
             Path | None,
-            typer.Option(metavar="FILE.png", help="Save a picture of the window and exit."),
+            typer.Option(
+                metavar="FILE.png", help="Save a picture of the window and exit, on a server too."
+            ),
         ] = None,
         version: Version = False,
     ) -> None:

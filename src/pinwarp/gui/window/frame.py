@@ -8,7 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from qtpy.QtCore import QByteArray, QEvent, QSettings, QSize, Qt, QTimer, Signal
-from qtpy.QtGui import QAction, QShowEvent
+from qtpy.QtGui import QAction, QGuiApplication, QShowEvent
 from qtpy.QtWidgets import (
     QApplication,
     QDockWidget,
@@ -240,6 +240,9 @@ class WindowFrame(QMainWindow):
     def keep_on_screen(self) -> None:
         """Make the window small enough for the screen, its frame counted, and move it onto it."""
         if self.isMaximized() or self.isFullScreen():
+            return
+        if QGuiApplication.platformName() == "offscreen":
+            # A screen that nobody has sets no limits.
             return
         room, frame = self.screen().availableGeometry(), self.frameGeometry()
         around = frame.size() - self.size()
