@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -27,6 +28,10 @@ from pinwarp.gui.window.main_window import MainWindow
 from pinwarp.io.samples import assets_folder, sample_session
 from pinwarp.session.keeping.recovery import LostWork
 from pinwarp.session.model.warped import WarpedModel
+
+
+# Software draws in the test's own thread: the other cores have tests of their own.
+os.environ.setdefault("LP_NUM_THREADS", "0")
 
 
 @pytest.fixture(scope="session")
