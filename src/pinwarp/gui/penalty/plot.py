@@ -271,22 +271,22 @@ class PenaltyPlot(QWidget):
             (curve.residual, theme.residual_colour(), "Residual"),
             (curve.leave_one_out, theme.leave_one_out_colour(), "Leave-one-out"),
         ]
-        places = [self.place_of(share) for share in (1.0 - curve.flexibility).tolist()]
-        ends = [self._level(float(values[-1])) for values, _, _ in lines]
+        # All at once: each place by itself would ask the slider for its handle.
+        places = area.left() + (1.0 - curve.flexibility) * area.width()
+        heights = [area.bottom() - x / plotted.top * area.height() for x, _, _ in lines]
+        ends = [float(levels[-1]) for levels in heights]
         # The words at the ends keep out of each other's way; the residual is never the larger.
         height = self._line
         ends[1] = max(ends[1], area.top() + height / 2 - 4)
         ends[0] = min(max(ends[0], ends[1] + height), area.bottom() - height / 2 + 4)
         ends[1] = min(ends[1], ends[0] - height)
-        for (values, colour, words), end in zip(lines, ends, strict=True):
-            if not np.isfinite(values).all():
+        for levels, (_, colour, words), end in zip(heights, lines, ends, strict=True):
+            if not np.isfinite(levels).all():
                 continue
             painter.setPen(QPen(colour, 1.8))
             painter.setBrush(Qt.BrushStyle.NoBrush)
-            levels = [self._level(value) for value in values.tolist()]
-            painter.drawPolyline(
-                QPolygonF([QPointF(x, y) for x, y in zip(places, levels, strict=True)])
-            )
+            spots = np.column_stack((places, levels)).tolist()
+            painter.drawPolyline(QPolygonF([QPointF(x, y) for x, y in spots]))
             painter.drawText(QPointF(area.right() + 8, end + height * 0.3), words)
 
     def _paint_present(self, painter: QPainter, area: QRectF) -> None:
