@@ -93,7 +93,7 @@ def test_what_is_said_many_times_in_one_turn_is_shown_once(sample):
 
 def test_an_overlay_is_written_in_place_and_only_where_it_is_another(sample):
     there = sample.window.viewports[DESTINATION]
-    actor, warp = there.actors["overlay"], there.drawn(Overlay).full
+    actor, warp = there.renderer.actors["overlay"], there.drawn(Overlay).full
     data = actor.mapper.dataset
     sample.editor.look(opacity=0.3)
     sample.settle()
@@ -105,7 +105,7 @@ def test_an_overlay_is_written_in_place_and_only_where_it_is_another(sample):
     sample.editor.commit(moved(sample, 2.0), "Move")
     sample.settle()
     assert there.drawn(Overlay).full is not warp
-    assert there.actors["overlay"] is actor
+    assert there.renderer.actors["overlay"] is actor
     assert actor.mapper.dataset is data
     assert data.GetPoints().GetMTime() > written
 
