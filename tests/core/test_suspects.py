@@ -228,12 +228,13 @@ def test_leaving_pairs_out_is_as_if_they_had_never_been_there(roughness):
     # In units of the mesh, a smooth field in those of the landmarks' size.
     size = 1.0 if roughness is Roughness.SPLINE else (fewer.scale / factor.scale) ** 3
     for level, noise in enumerate(field.noise):
-        values = 1 / alone.certainty[:, 0] - alone.noise[0]
+        values = 1 / alone.certainty[0] - alone.noise[0]
         G = (alone.modes / (size * values + noise)) @ alone.modes.T
-        assert np.allclose(seen.precision[rest, level], np.diag(G), rtol=1e-7)
-        assert np.allclose(seen.pulls[rest, :, level], G @ y[rest], rtol=1e-6, atol=1e-9)
+        assert np.allclose(seen.precision[level, rest], np.diag(G), rtol=1e-7)
+        assert np.allclose(seen.pulls[level, rest], G @ y[rest], rtol=1e-6, atol=1e-9)
         assert seen.misfit[level] == pytest.approx(float(np.sum(y[rest] * (G @ y[rest]))), rel=1e-7)
-        assert np.allclose(seen.block(level, rest.tolist()), G, rtol=1e-6, atol=1e-12)
+        (block,) = seen.block(slice(level, level + 1), rest.tolist())
+        assert np.allclose(block, G, rtol=1e-6, atol=1e-12)
         assert np.allclose(seen.column(level, 5)[rest], G[:, list(rest).index(5)], atol=1e-9)
         near = seen.near_entries(level)[rest[0]]
         nearest = field.near[rest[0], : field.neighbours + 1]
@@ -241,6 +242,24 @@ def test_leaving_pairs_out_is_as_if_they_had_never_been_there(roughness):
         assert len(near) == len(nearest)
         places = [list(rest).index(field.near[rest[0]][k]) for k in kept]
         assert np.allclose(near[kept], G[0, places], atol=1e-9)
+
+
+@pytest.mark.parametrize("duplicate", [False, True])
+def test_pairs_left_out_one_by_one_are_left_out_as_if_at_once(duplicate):
+    source, destination = bone()
+    if duplicate:
+        source[8], destination[8] = source[3], destination[3]
+    field, y = PairField.of(factorise(source)), destination - destination.mean(axis=0)
+    rest = np.delete(np.arange(20), [3, 8, 15])
+    whole = evidence(field, y)
+    at_once, one_by_one = whole.without((3, 8, 15)), whole.without((15,)).without((8, 3))
+    assert at_once.left_out == one_by_one.left_out == (3, 8, 15)
+    for what in ("pulls", "precision", "one_wrong"):
+        first, second = (getattr(seen, what)[:, rest] for seen in (at_once, one_by_one))
+        assert np.allclose(first, second, rtol=1e-7, atol=1e-9 * np.abs(first).max()), what
+    assert np.allclose(at_once.near_entries(2)[rest], one_by_one.near_entries(2)[rest], atol=1e-9)
+    assert at_once.misfit == pytest.approx(one_by_one.misfit, rel=1e-7)
+    assert at_once.level_without(5) == one_by_one.level_without(5)
 
 
 def test_the_chance_depends_neither_on_the_unit_nor_on_the_pose():

@@ -104,7 +104,7 @@ def _judged(asked: Sequence[tuple[Evidence, int, int]]) -> list[Chance]:
     # The mean square, as far as isolation does not explain it.
     shrunk = figures.sum(axis=1) / np.maximum(others.figures.sum(axis=1), _TINY * others.count)
     freedom = np.array([seen.freedom - 1 for seen, _, _ in asked])
-    remaining = np.array([seen.remaining[row, level] for seen, row, level in asked])
+    remaining = np.array([seen.remaining[level, row] for seen, row, level in asked])
     usual, own = _surroundings(others, figures, grown, shrunk * remaining / (3 * freedom))
     own *= others.of_the_one(grown)
     relative = figures / usual
@@ -112,13 +112,13 @@ def _judged(asked: Sequence[tuple[Evidence, int, int]]) -> list[Chance]:
     weight, scale = _tail(
         np.where(others.kept, np.maximum(relative, least), 0.0), others.count, freedom
     )
-    gain = np.array([seen.gains[row, level] for seen, row, level in asked])
-    precision = np.array([seen.precision[row, level] for seen, row, level in asked])
+    gain = np.array([seen.gains[level, row] for seen, row, level in asked])
+    precision = np.array([seen.precision[level, row] for seen, row, level in asked])
     spread = 1 / (1 / TAILS + 1 / (3.0 * freedom[:, None]))
     tails = fdtrc(3, spread, (gain / 3 / own)[:, None] / scale)
-    values = np.sum(weight * tails, axis=1)
+    values = (weight * tails).sum(axis=1)
     shifts = np.sqrt(gain / precision)
-    usuals = np.sqrt(3 * own * np.sum(weight * scale, axis=1) / precision)
+    usuals = np.sqrt(3 * own * (weight * scale).sum(axis=1) / precision)
     told = zip(values.tolist(), shifts.tolist(), usuals.tolist(), strict=True)
     return [Chance(*figures) for figures in told]
 
@@ -145,13 +145,13 @@ class _Others:
     def of(cls, asked: Sequence[tuple[Evidence, int, int]]) -> _Others:
         rows = np.array([row for _, row, _ in asked])
         each = np.arange(len(asked))
-        column = np.stack([seen.column(level, row) for seen, row, level in asked])
-        pulls = np.stack([seen.pulls[:, :, level] for seen, _, level in asked])
-        before = np.stack([seen.precision[:, level] for seen, _, level in asked])
+        column = np.array([seen.column(level, row) for seen, row, level in asked])
+        pulls = np.array([seen.pulls[level] for seen, _, level in asked])
+        before = np.array([seen.precision[level] for seen, _, level in asked])
         share = column / column[each, rows, None]
         pulls = pulls - share[:, :, None] * pulls[each, rows, None]
         precision = before - share * column
-        kept = np.stack([seen.kept for seen, _, _ in asked])
+        kept = np.array([seen.kept for seen, _, _ in asked])
         kept &= precision > NOTHING * _median(before, np.full(len(asked), before.shape[1]))
         kept[each, rows] = False
         safe = np.where(kept, precision, 1.0)
@@ -160,7 +160,7 @@ class _Others:
         squares = np.einsum("anc,anc->an", pulls, pulls)
         return cls(
             field=asked[0][0].field,
-            near_entries=np.stack([seen.near_entries(level) for seen, _, level in asked]),
+            near_entries=np.array([seen.near_entries(level) for seen, _, level in asked]),
             rows=rows,
             column=column,
             pulls=pulls,
@@ -183,8 +183,9 @@ class _Others:
 def _median(values: Matrix, count: NDArray[np.intp]) -> Matrix:
     """Return the median of each row, (asked, 1): so many of its values are not infinite."""
     ascending = np.sort(values, axis=1)
-    middle = np.stack([(count - 1) // 2, count // 2], axis=1)
-    return np.asarray(np.take_along_axis(ascending, middle, axis=1).mean(axis=1, keepdims=True))
+    each = np.arange(len(values))
+    middle = ascending[each, (count - 1) // 2] + ascending[each, count // 2]
+    return np.asarray(middle[:, None] / 2)
 
 
 def _slope(others: _Others) -> Matrix:
@@ -195,7 +196,7 @@ def _slope(others: _Others) -> Matrix:
     y = np.where(kept, np.log(np.maximum(others.figures, least)), 0.0)
     x = np.where(kept, x - x.sum(axis=1, keepdims=True) / count, 0.0)
     y = y - y.sum(axis=1, keepdims=True) / count
-    slope = np.sum(x * y, axis=1) / (np.sum(x * x, axis=1) + BELIEF)
+    slope = (x * y).sum(axis=1) / ((x * x).sum(axis=1) + BELIEF)
     return np.asarray(np.clip(slope, 0.0, STEEPEST))
 
 
@@ -220,11 +221,11 @@ def _surroundings(
     # Of one neighbour more than needed the first that are there.
     told &= np.cumsum(told, axis=2) <= count
     start = (WHOLE_SET * middle)[:, None]
-    usual = (start + np.sum(theirs * told, axis=2)) / (WHOLE_SET + told.sum(axis=2))
-    around = others.field.near[others.rows]
-    there = np.take_along_axis(others.kept, around, axis=1)
+    usual = (start + (theirs * told).sum(axis=2)) / (WHOLE_SET + told.sum(axis=2))
+    around = np.arange(len(figures))[:, None], others.field.near[others.rows]
+    there = others.kept[around]
     there &= np.cumsum(there, axis=1) <= count
-    own = start[:, 0] + np.sum(np.take_along_axis(figures, around, axis=1) * there, axis=1)
+    own = start[:, 0] + (figures[around] * there).sum(axis=1)
     own = own / (WHOLE_SET + there.sum(axis=1))
     return np.maximum(usual, np.maximum(1e-12 * middle, _TINY)[:, None]), np.maximum(own, _TINY)
 
@@ -239,11 +240,12 @@ def _tail(
     x, count, third = figures[:, None, :], count[:, None], TAILS / 3
     scale = np.maximum(x.sum(axis=2) / count, _TINY) + np.zeros(len(TAILS))
     share = np.empty((len(x), len(TAILS), x.shape[2]))
+    step, rest = (third + 1) / (count + SCALE), SCALE / (count + SCALE)
     for _ in range(STEPS):
         # Each figure x counts (m + 3) / (m + 3 x / scale) times.
         np.add(x, (third * scale)[:, :, None], out=share)
         np.divide(x, share, out=share)
-        scale = ((third + 1) * scale * share.sum(axis=2) + SCALE) / (count + SCALE)
+        scale = step * scale * share.sum(axis=2) + rest
     np.divide(x, (third * scale)[:, :, None], out=share)
     likely = count * (TAIL_DENSITY - 1.5 * np.log(scale))
     likely -= (TAILS + 3) / 2 * np.log1p(share, out=share).sum(axis=2)

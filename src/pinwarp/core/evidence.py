@@ -22,6 +22,8 @@ Matrix = NDArray[np.float64]
 UNJUDGED = 1e-9
 # What an affine map leaves of destinations of unit length, by rounding.
 LEAST_MISFIT = 1e-24
+# A share of the largest eigenvalue that is rounding.
+LEAST_SQUARE = 1e-15
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,10 +37,10 @@ class Evidence:
     destination : (n, 3) float64
         About their middle, and of unit length in all.
     left_out
-        The rows that are left out.
-    pulls : (n, 3, k)
+        The rows that are left out, ascending.
+    pulls : (k, n, 3)
         ``G y`` at every noise level.
-    precision : (n, k)
+    precision : (k, n)
         ``diag G``.
     misfit : (k,)
         ``tr y' G y``.
@@ -48,8 +50,8 @@ class Evidence:
         How many modes are left.
     kept : (n,) bool
         The pairs that can be judged.
-    inverse : (k, d, d)
-        That of ``G`` between those that are left out.
+    taken : (k, n, d)
+        What is taken from ``G`` for those that are left out, ``taken taken'``.
     """
 
     field: PairField
@@ -61,22 +63,23 @@ class Evidence:
     log_det: Matrix
     freedom: int
     kept: NDArray[np.bool_]
-    inverse: Matrix
+    taken: Matrix
 
     @cached_property
     def _safe(self) -> Matrix:
-        return np.where(self.kept[:, None], self.precision, 1.0)
+        return np.where(self.kept, self.precision, 1.0)
 
     @cached_property
     def gains(self) -> Matrix:
-        """(n, k): by how much leaving out one more pair lowers the misfit."""
-        squares = np.einsum("nck,nck->nk", self.pulls, self.pulls)
-        return np.where(self.kept[:, None], squares / self._safe, 0.0)
+        """(k, n): by how much leaving out one more pair lowers the misfit."""
+        squares = np.einsum("knc,knc->kn", self.pulls, self.pulls)
+        return np.where(self.kept, squares / self._safe, 0.0)
 
     @cached_property
     def remaining(self) -> Matrix:
-        """(n, k): the misfit without one more pair."""
-        return np.maximum(self.misfit - self.gains, UNJUDGED * self.misfit)
+        """(k, n): the misfit without one more pair."""
+        misfit = self.misfit[:, None]
+        return np.maximum(misfit - self.gains, UNJUDGED * misfit)
 
     @cached_property
     def nothing_wrong(self) -> Matrix:
@@ -85,8 +88,8 @@ class Evidence:
 
     @cached_property
     def one_wrong(self) -> Matrix:
-        """(n, k): the log likelihood that this pair is wrong, wherever it should be."""
-        return self.likelihood(self.remaining, self.log_det)
+        """(k, n): the log likelihood that this pair is wrong, wherever it should be."""
+        return self.likelihood(self.remaining, self.log_det[:, None])
 
     @cached_property
     def level(self) -> int:
@@ -95,8 +98,8 @@ class Evidence:
 
     def level_without(self, row: int) -> int:
         """Return the most likely noise level of the others alone."""
-        freed = self.log_det - np.log(self._safe[row])
-        fewer = -1.5 * (self.freedom - 1) * np.log(self.remaining[row]) + 1.5 * freed
+        freed = self.log_det - np.log(self._safe[:, row])
+        fewer = -1.5 * (self.freedom - 1) * np.log(self.remaining[:, row]) + 1.5 * freed
         return int(fewer.argmax())
 
     def likelihood(self, misfit: Matrix | float, log_det: Matrix | float) -> Matrix:
@@ -105,63 +108,50 @@ class Evidence:
 
     def column(self, level: int, row: int) -> Matrix:
         """Return a column of ``G`` at a noise level, (n,)."""
-        column = self.field.entries(level, [row])[:, 0]
-        if self.left_out:
-            taken, onto = self._taken(level)
-            column = column - onto @ taken[row]
-        return column
+        taken = self.taken[level]
+        return np.asarray(self.field.column(row)[level] - taken @ taken[row])
 
-    def block(self, level: int | slice, rows: list[int]) -> Matrix:
-        """Return ``G`` between some pairs at a noise level, or at some, (..., rows, rows)."""
-        block = self.field.entries(level, rows, rows)
-        if self.left_out:
-            taken = self.field.entries(level, self.left_out, rows)
-            block = block - taken @ self.inverse[level] @ taken.swapaxes(-1, -2)
-        return block
+    def block(self, levels: slice, rows: list[int]) -> Matrix:
+        """Return ``G`` between some pairs at some noise levels, (levels, rows, rows)."""
+        taken = self.taken[levels, rows]
+        return self.field.block(levels, rows) - taken @ taken.swapaxes(1, 2)
 
     def near_entries(self, level: int) -> Matrix:
         """Return ``G`` between each pair and its nearest neighbours at a noise level."""
-        entries = self.field.near_entries[level]
+        entries = self.field.near_entries(level)
         if self.left_out:
-            taken, onto = self._taken(level)
+            taken = self.taken[level]
             near = self.field.near[:, : entries.shape[1]]
-            entries = entries - np.einsum("nd,nkd->nk", onto, taken[near])
-        return np.asarray(entries)
-
-    @cached_property
-    def _known(self) -> dict[int, tuple[Matrix, Matrix]]:
-        return {}
-
-    def _taken(self, level: int) -> tuple[Matrix, Matrix]:
-        """Return the columns of those left out as they were, and the same by their inverse."""
-        if level not in self._known:
-            taken = self.field.entries(level, self.left_out)
-            self._known[level] = taken, taken @ self.inverse[level]
-        return self._known[level]
+            entries = entries - (taken[near] @ taken[:, :, None])[:, :, 0]
+        return entries
 
     def without(self, rows: Sequence[int]) -> Evidence:
-        """Return what all say without some, of what all say."""
+        """Return what the pairs say without some more of them."""
         rows = list(rows)
         if not rows:
             return self
-        # (k, n, d), (k, d, d), (k, d, 3)
-        taken = self.field.entries(slice(None), rows)
-        block = taken[:, rows]
-        inverse = np.asarray(np.linalg.pinv(block, hermitian=True), dtype=np.float64)
-        onto = taken @ inverse
-        theirs = self.pulls[rows].transpose(2, 0, 1)
-        misfit = self.misfit - np.sum(theirs * (inverse @ theirs), axis=(1, 2))
-        precision = self.precision - np.sum(onto * taken, axis=2).T
+        # (k, n, d), and what of it is taken from G.
+        columns = np.stack([self.field.column(row) for row in rows], axis=2)
+        columns = columns - self.taken @ self.taken[:, rows].swapaxes(1, 2)
+        squares, axes = np.linalg.eigh(columns[:, rows])
+        # What those before have determined is not left out once more.
+        there = squares > LEAST_SQUARE * squares[:, -1:]
+        axes = axes / np.sqrt(np.where(there, squares, np.inf))[:, None]
+        taken = columns @ axes
+        theirs = axes.swapaxes(1, 2) @ self.pulls[:, rows]
+        misfit = self.misfit - np.einsum("kdc,kdc->k", theirs, theirs)
+        precision = self.precision - np.einsum("knd,knd->kn", taken, taken)
+        left_out = tuple(sorted((*self.left_out, *rows)))
         return replace(
             self,
-            left_out=tuple(rows),
-            pulls=self.pulls - (onto @ theirs).transpose(1, 2, 0),
+            left_out=left_out,
+            pulls=self.pulls - taken @ theirs,
             precision=precision,
             misfit=np.maximum(misfit, LEAST_MISFIT),
-            log_det=self.log_det - np.linalg.slogdet(block)[1],
+            log_det=self.log_det - np.log(np.where(there, squares, 1.0)).sum(axis=1),
             freedom=self.freedom - len(rows),
-            kept=_judged(precision, rows),
-            inverse=inverse,
+            kept=_judged(precision, left_out),
+            taken=np.concatenate([self.taken, taken], axis=2),
         )
 
 
@@ -184,31 +174,32 @@ def evidence(field: PairField, destination: Matrix, left_out: Sequence[int] = ()
     >>> strange = 0.1 * np.sin(source)
     >>> strange[4] += 1
     >>> seen = evidence(PairField.of(factorise(source)), strange)
-    >>> int(seen.one_wrong[:, seen.level].argmax())
+    >>> int(seen.one_wrong[seen.level].argmax())
     4
     """
     modes, certainty = field.modes, field.certainty
     parts = modes.T @ destination
-    levels = len(field.noise)
-    spread = parts[:, :, None] * certainty[:, None, :]
+    levels = len(certainty)
+    spread = certainty.T[:, :, None] * parts[:, None]
+    # One product for all levels.
     pulls = modes @ spread.reshape(len(parts), 3 * levels)
     whole = Evidence(
         field=field,
         destination=destination,
         left_out=(),
-        pulls=pulls.reshape(len(modes), 3, levels),
+        pulls=np.ascontiguousarray(pulls.reshape(len(modes), levels, 3).transpose(1, 0, 2)),
         precision=field.precision,
-        misfit=np.maximum(np.sum(parts * parts, axis=1) @ certainty, LEAST_MISFIT),
+        misfit=np.maximum(certainty @ np.sum(parts * parts, axis=1), LEAST_MISFIT),
         log_det=field.log_det,
         freedom=modes.shape[1],
         kept=_judged(field.precision),
-        inverse=np.zeros((levels, 0, 0)),
+        taken=np.zeros((levels, len(modes), 0)),
     )
     return whole.without(left_out)
 
 
 def _judged(precision: Matrix, left_out: Sequence[int] = ()) -> NDArray[np.bool_]:
     """Return which pairs can be judged."""
-    kept = np.asarray(precision[:, 0] > UNJUDGED * float(np.median(precision[:, 0])))
+    kept = np.asarray(precision[0] > UNJUDGED * float(np.median(precision[0])))
     kept[list(left_out)] = False
     return kept

@@ -43,17 +43,17 @@ def best_exchange(seen: Evidence, rows: NDArray[np.intp]) -> tuple[float, int, i
     [3, 7]
     """
     levels = slice(0, None, STRIDE)
-    y, pulls = seen.destination[rows], seen.pulls[rows, :, levels].transpose(2, 0, 1)
-    misfit = seen.misfit[levels]
-    G = seen.block(levels, rows.tolist())
-    across = pulls @ y.T
+    y, misfit = seen.destination[rows], seen.misfit[levels]
+    across = seen.pulls[levels, rows] @ y.T
     across -= np.diagonal(across, axis1=1, axis2=2)[:, :, None]
-    G *= -2
-    diagonal = np.diagonal(G, axis1=1, axis2=2) / -2
-    G += diagonal[:, :, None]
-    G += diagonal[:, None]
-    G *= cdist(y, y) ** 2
-    after = misfit[:, None, None] + 2 * (across + across.swapaxes(1, 2)) + G
+    after = seen.block(levels, rows.tolist())
+    diagonal = np.diagonal(after, axis1=1, axis2=2).copy()
+    after *= -2
+    after += diagonal[:, :, None]
+    after += diagonal[:, None]
+    after *= cdist(y, y) ** 2
+    after += 2 * (across + across.swapaxes(1, 2))
+    after += misfit[:, None, None]
     # Nobody is exchanged with himself.
     after[:, range(len(rows)), range(len(rows))] = np.inf
     flat = after.reshape(len(after), -1)

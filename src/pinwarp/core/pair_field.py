@@ -7,7 +7,6 @@ Spline Models for Observational Data, 1990, section 2.4). Bones bend more smooth
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
@@ -50,9 +49,9 @@ class PairField:
         The field's modes at the landmarks, orthonormal columns.
     noise : (k,)
         The noise levels, as variances in units of the field's.
-    certainty : (m, k)
+    certainty : (k, m)
         ``1 / (lambda + noise)``.
-    precision : (n, k)
+    precision : (k, n)
         The diagonal of ``G = modes certainty modes'``.
     log_det : (k,)
         Minus the logarithm of the determinant of the field's variance.
@@ -91,7 +90,7 @@ class PairField:
         values = np.maximum(values, SOFTEST * middle)
         steps = np.geomspace(LEAST_NOISE * middle, MOST_NOISE * top, LEVELS - 1)
         noise = np.concatenate([[NO_NOISE * middle], steps])
-        certainty = 1.0 / (values[:, None] + noise)
+        certainty = 1.0 / (values + noise[:, None])
         count = min(NEIGHBOURS + SPARE, len(factor.source) - 1)
         # Rows are taken again and again.
         modes = np.ascontiguousarray(modes)
@@ -99,8 +98,8 @@ class PairField:
             modes=modes,
             noise=noise,
             certainty=certainty,
-            precision=(modes * modes) @ certainty,
-            log_det=np.sum(np.log(certainty), axis=0),
+            precision=certainty @ (modes * modes).T,
+            log_det=np.log(certainty).sum(axis=1),
             near=_nearest(factor.source, count),
         )
 
@@ -109,30 +108,39 @@ class PairField:
         """How many make a neighbourhood."""
         return int(np.clip(len(self.modes) // PART, 1, NEIGHBOURS))
 
-    def entries(
-        self, level: int | slice, rows: Sequence[int], of: Sequence[int] | None = None
-    ) -> Matrix:
-        """Return the columns of ``G`` of some landmarks, of all rows or some.
-
-        At a noise level, or at some of them: (..., of, rows).
-        """
-        modes = self.modes if of is None else self.modes[list(of)]
-        certainty = np.ascontiguousarray(self.certainty.T[level])
-        weighed = self.modes[list(rows)] * certainty[..., None, :]
-        # One product for all levels.
-        found = modes @ weighed.reshape(-1, modes.shape[1]).T
-        shape = (len(modes), *certainty.shape[:-1], len(rows))
-        return np.asarray(np.moveaxis(found.reshape(shape), 0, -2))
+    def column(self, row: int) -> Matrix:
+        """Return a column of ``G`` at every noise level, (k, n)."""
+        if row not in self._columns:
+            self._columns[row] = (self.certainty * self.modes[row]) @ self.modes.T
+        return self._columns[row]
 
     @cached_property
-    def near_entries(self) -> Matrix:
-        """``G`` between each landmark and its neighbours at every noise level.
+    def _columns(self) -> dict[int, Matrix]:
+        return {}
 
-        (levels, n, :attr:`neighbours` + 1): of one more than needed another may be left out.
+    def block(self, levels: slice, rows: list[int]) -> Matrix:
+        """Return ``G`` between some landmarks at some noise levels, (levels, rows, rows)."""
+        modes = self.modes[rows]
+        weighed = modes * self.certainty[levels, None]
+        # One product for all levels.
+        found = weighed.reshape(-1, modes.shape[1]) @ modes.T
+        return np.asarray(found.reshape(-1, len(rows), len(rows)))
+
+    def near_entries(self, level: int) -> Matrix:
+        """Return ``G`` between each landmark and its neighbours at a noise level.
+
+        (n, :attr:`neighbours` + 1): of one more than needed another may be left out.
         """
-        nearest = self.near.T[: self.neighbours + 1]
-        columns = [(self.modes * self.modes[rows]) @ self.certainty for rows in nearest]
-        return np.ascontiguousarray(np.stack(columns).transpose(2, 1, 0))
+        if level not in self._near_entries:
+            # All of G takes less time than what is needed of it: a product with its own transpose.
+            root = self.modes * np.sqrt(self.certainty[level])
+            near = self.near[:, : self.neighbours + 1]
+            self._near_entries[level] = np.take_along_axis(root @ root.T, near, axis=1)
+        return self._near_entries[level]
+
+    @cached_property
+    def _near_entries(self) -> dict[int, Matrix]:
+        return {}
 
 
 def _modes(factor: SourceFactor, roughness: Roughness) -> tuple[Matrix, Matrix]:

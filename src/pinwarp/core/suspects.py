@@ -48,7 +48,7 @@ FEW, MOST_HIDDEN, DOUBTFUL = 40, 3, 0.02
 # the choice of it.
 MOST_MASKED, PLAIN = 20, 3.0
 # Exchanges are tried among so many of the strangest pairs.
-EXCHANGED = 60
+EXCHANGED = 30
 _TINY = 1e-300
 
 _Judge = Callable[[list[Asked], float], list[Chance]]
@@ -187,7 +187,7 @@ class _Search:
 
     def _strangest(self, seen: Evidence, within: float = np.inf) -> list[int]:
         """Return the rows whose leaving out explains most, the best first."""
-        alone = np.where(seen.kept & self._free, seen.one_wrong[:, seen.level], -np.inf)
+        alone = np.where(seen.kept & self._free, seen.one_wrong[seen.level], -np.inf)
         order = np.argsort(-alone)[:LOOKED_AT].tolist()
         return [row for row in order if alone[row] > max(alone[order[0]] - within, -np.inf)]
 
@@ -230,7 +230,7 @@ class _Search:
         rows: list[int] = []
         while len(rows) < min(MOST_MASKED, MOST_WRONG * len(self._free) - named):
             strangest = self._strangest(out)[:1]
-            gains = out.one_wrong[strangest, out.level] - out.nothing_wrong[out.level]
+            gains = out.one_wrong[out.level, strangest] - out.nothing_wrong[out.level]
             if out.freedom <= LEAST_FREEDOM or not np.any(gains > np.log(count) + PLAIN):
                 break
             rows += strangest
@@ -275,14 +275,14 @@ class _Search:
         """Find two pairs whose exchange explains more than any single displaced one."""
         free = seen.kept & self._free
         count = int(np.sum(free))
-        strange = np.where(free, seen.gains.max(axis=1), -1.0)
+        strange = np.where(free, seen.gains.max(axis=0), -1.0)
         rows = np.argsort(-strange)[: min(EXCHANGED, count)]
         if count < 2:
             return None
         before = float(seen.nothing_wrong.max())
         likely, i, j = best_exchange(seen, rows)
         gain = likely - before - np.log(count * (count - 1) / 2)
-        alone = float(seen.one_wrong[free].max()) - before - np.log(count) - 3 * FREE_COORDINATE
+        alone = float(seen.one_wrong[:, free].max()) - before - np.log(count) - 3 * FREE_COORDINATE
         if gain <= max(ALIKE, alone) or (len(free) > FEW and self._doubtful(i, j)):
             return None
         self._pairs.exchange(i, j)

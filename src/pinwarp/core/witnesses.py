@@ -22,6 +22,8 @@ AROUND = 80
 
 # A pair that is asked about, and what is left of the others besides.
 Asked = tuple[Evidence, int]
+# Those left out, and the one that is asked about.
+_Key = tuple[tuple[int, ...], int]
 
 
 class Witnesses:
@@ -41,19 +43,23 @@ class Witnesses:
         self._destination = destination.copy()
         self._all = evidence(self._field, self._destination)
         self._seen: dict[tuple[int, ...], Evidence] = {}
+        self._chances: dict[_Key, Chance] = {}
         self._smooth: dict[tuple[int, ...], Evidence | None] = {}
-        self._chances: dict[tuple[tuple[int, ...], int], Chance] = {}
+        self._agreed: dict[_Key, Chance] = {}
 
     @property
     def freedom(self) -> int:
         """How many modes all pairs have."""
-        return len(self._field.certainty)
+        return self._all.freedom
 
     def without(self, rows: Iterable[int]) -> Evidence:
         """Return what the others say without some."""
         out = tuple(sorted(rows))
         if out not in self._seen:
-            self._seen[out] = self._all.without(out)
+            # From those that lack most of them already.
+            known = max((x for x in self._seen if {*x} <= {*out}), key=len, default=())
+            seen = self._seen.get(known, self._all)
+            self._seen[out] = seen.without([row for row in out if row not in known])
         return self._seen[out]
 
     def leave_out(self, row: int) -> None:
@@ -65,7 +71,7 @@ class Witnesses:
         """Exchange two destinations: from now on that is what the pairs are."""
         self._destination[[i, j]] = self._destination[[j, i]]
         self._all = evidence(self._field, self._destination)
-        for known in (self._seen, self._smooth, self._chances):
+        for known in (self._seen, self._chances, self._smooth, self._agreed):
             known.clear()
 
     def chances(self, asked: Sequence[Asked]) -> list[Chance]:
@@ -79,12 +85,17 @@ class Witnesses:
     def agreed(self, asked: Sequence[Asked], limit: float) -> list[Chance]:
         """Return the chances of pairs; below a limit, those in a smooth field if larger."""
         return [
-            chance if chance.value >= limit else self._smoother(seen, row, chance)
+            chance if chance.value >= limit else self._agreed_by_both((seen.left_out, row), chance)
             for (seen, row), chance in zip(asked, self.chances(asked), strict=True)
         ]
 
-    def _smoother(self, seen: Evidence, row: int, chance: Chance) -> Chance:
-        smooth, place = self._smoothly(seen.left_out, row)
+    def _agreed_by_both(self, key: _Key, chance: Chance) -> Chance:
+        if key not in self._agreed:
+            self._agreed[key] = self._smoother(*key, chance)
+        return self._agreed[key]
+
+    def _smoother(self, left_out: tuple[int, ...], row: int, chance: Chance) -> Chance:
+        smooth, place = self._smoothly(left_out, row)
         if smooth is None or not smooth.kept[place]:
             return chance
         (other,) = chances_of([(smooth, place)])
