@@ -150,7 +150,9 @@ def test_one_displaced_by_a_tenth_of_the_bone_is_named_and_others_are_not(field,
     assert innocents <= 1
 
 
-@pytest.mark.parametrize(("count", "displaced", "sets"), [(60, 3, 4), (60, 6, 2), (150, 15, 1)])
+@pytest.mark.parametrize(
+    ("count", "displaced", "sets"), [(60, 3, 4), (60, 6, 2), (150, 15, 1), (300, 30, 1)]
+)
 def test_several_of_many_do_not_hide_one_another(count, displaced, sets):
     for seed in range(sets):
         case = made_up(count, seed, FIELDS[seed % 2], displaced=displaced, off=0.15)
@@ -178,6 +180,12 @@ def test_any_two_swapped_destinations_are_found_out():
         swapped[[i, j]] = swapped[[j, i]]
         found = strict(suspects(factor, swapped))
         assert [(x.kind, set(x.rows)) for x in found] == [(SWAPPED, {i, j})]
+
+
+def test_two_displaced_are_not_called_swapped_where_that_explains_only_most():
+    case = made_up(41, 1004, smooth, displaced=2, off=0.15)
+    found = strict(suspects(case.factor, case.destination))
+    assert {(x.kind, x.rows) for x in found} == {(DISPLACED, (row,)) for row in case.wrong}
 
 
 def test_two_that_lie_together_look_swapped_only_where_that_is_clearly_likelier():

@@ -44,9 +44,11 @@ FREE_COORDINATE = 2.0
 # Up to so many pairs, some that hide one another are looked for, and so many of them; in more
 # pairs, each of two exchanged must be as unlikely as this by itself.
 FEW, MOST_HIDDEN, DOUBTFUL = 40, 3, 0.02
+# ... and leaving out both must not explain more than their exchange by this share of its gain.
+BOTH_DISPLACED = 0.2
 # Of more pairs so many at most are left out one after the other, each for so many nats besides
 # the choice of it.
-MOST_MASKED, PLAIN = 20, 3.0
+MOST_MASKED, PLAIN = 60, 3.0
 # Exchanges are tried among so many of the strangest pairs.
 EXCHANGED = 30
 _TINY = 1e-300
@@ -225,7 +227,6 @@ class _Search:
     def _masked(self, seen: Evidence) -> list[Finding]:
         """Find several of many pairs, left out one by one while that explains a lot."""
         count, out = self._free_count(seen), seen
-        limit = STRICT / count
         named = int(np.sum(~self._free))
         rows: list[int] = []
         while len(rows) < min(MOST_MASKED, MOST_WRONG * len(self._free) - named):
@@ -236,14 +237,15 @@ class _Search:
             rows += strangest
             out = self._without(*rows)
         while len(rows) > 1:
-            (judged,) = self._each([rows], limit)
-            strange = [row for row, chance in judged if chance.value < limit]
-            if strange == rows:
-                for row in rows:
+            (judged,) = self._each([rows], WORTH_A_LOOK / count)
+            doubted = [row for row, chance in judged if chance.value < WORTH_A_LOOK / count]
+            if doubted == rows:
+                found = [(row, x) for row, x in judged if x.value < STRICT / count]
+                for row, _ in found:
                     self._leave_out(row)
-                return [self._finding((row,), x, x.value * count) for row, x in judged]
+                return [self._finding((row,), x, x.value * count) for row, x in found]
             # Those that are ordinary without the others are among the others.
-            rows = strange
+            rows = doubted
         return []
 
     def _each(self, sets: list[list[int]], limit: float) -> list[list[tuple[int, Chance]]]:
@@ -283,8 +285,12 @@ class _Search:
         likely, i, j = best_exchange(seen, rows)
         gain = likely - before - np.log(count * (count - 1) / 2)
         alone = float(seen.one_wrong[:, free].max()) - before - np.log(count) - 3 * FREE_COORDINATE
-        if gain <= max(ALIKE, alone) or (len(free) > FEW and self._doubtful(i, j)):
+        if gain <= max(ALIKE, alone):
             return None
+        if len(free) > FEW:
+            without = seen.likelihood(self._without(i, j).misfit, seen.log_det).max()
+            if without - likely > BOTH_DISPLACED * gain or self._doubtful(i, j):
+                return None
         self._pairs.exchange(i, j)
         self._free[[i, j]] = False
         return Finding(FindingKind.SWAPPED, (i, j), float(np.exp(-gain)))
