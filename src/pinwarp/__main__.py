@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 from pinwarp.cli.app import make_app
+from pinwarp.cli.telling import spell_what_is_not_in_the_encoding
 
 # Qt draws into memory, and VTK by no window system; neither is to complain of what is missing.
 _WITHOUT_DISPLAY = {
@@ -21,6 +22,7 @@ _WITHOUT_DISPLAY = {
 
 def main() -> None:
     """Run the ``pinwarp`` command."""
+    spell_what_is_not_in_the_encoding()
     make_app(_open_window)()
 
 

@@ -54,24 +54,24 @@ def test_in_no_cell_of_a_report(tmp_path, formula):
     path = tmp_path / "a.csv"
     write_figures(path, [ReportRow(formula, formula, formula, -1.5, formula)])
     write_figures(path, [ReportRow(formula, formula, formula, -1.5, formula)])
-    assert_harmless(path.read_text())
-    assert path.read_text().splitlines()[1].split(",")[-2] == "-1.5"
+    assert_harmless(path.read_text(encoding="utf-8"))
+    assert path.read_text(encoding="utf-8").splitlines()[1].split(",")[-2] == "-1.5"
 
 
 def test_an_infinite_figure_is_no_formula(tmp_path):
     write_figures(tmp_path / "a.csv", [ReportRow("a", "b", "c", -math.inf)])
-    assert "'-inf" in (tmp_path / "a.csv").read_text()
+    assert "'-inf" in (tmp_path / "a.csv").read_text(encoding="utf-8")
 
 
 @each_formula
 def test_in_no_column_of_a_summary_also_one_that_was_read(tmp_path, formula):
     path = tmp_path / "summary.csv"
     write_summary(path, [dict.fromkeys(COLUMNS, formula)])
-    assert_harmless(path.read_text())
+    assert_harmless(path.read_text(encoding="utf-8"))
     again = read_summary(path)
     assert again == {formula: dict.fromkeys(COLUMNS, formula)}
     write_summary(path, again.values())
-    assert_harmless(path.read_text())
+    assert_harmless(path.read_text(encoding="utf-8"))
 
 
 @each_formula
@@ -87,7 +87,7 @@ def test_in_no_cell_of_what_is_copied(formula):
 def test_in_no_cell_of_landmarks(tmp_path, formula, name):
     path = tmp_path / name
     write_landmarks(path, [Landmark(formula, (-1, 2, 3), (4, -5, 6))], None)
-    assert_harmless(path.read_text())
+    assert_harmless(path.read_text(encoding="utf-8"))
     (landmark,) = read_landmarks(path, Side.SOURCE).landmarks
     assert (landmark.name, landmark.source) == (formula, (-1, 2, 3))
 
@@ -102,14 +102,14 @@ def test_in_no_cell_and_no_line_of_a_session(tmp_path, formula):
         unknown=(("by", f'Ada; "{formula}'), ("", f"x,\t{formula}")),
     )
     write_session(path, record)
-    assert_harmless(path.read_text())
+    assert_harmless(path.read_text(encoding="utf-8"))
     assert read_session(path) == record
 
 
 def test_an_older_header_with_quotes_is_read_as_it_is(tmp_path):
     path = tmp_path / "a.pinwarp.csv"
     write_session(path, SessionRecord(unit='"mm"'))
-    assert '# unit: "mm"\n' in path.read_text()
+    assert '# unit: "mm"\n' in path.read_text(encoding="utf-8")
     assert read_session(path).unit == '"mm"'
 
 
@@ -117,7 +117,7 @@ def test_an_older_header_with_quotes_is_read_as_it_is(tmp_path):
 def test_a_label_of_slicer_is_as_it_is_for_it_is_no_spreadsheets_table(tmp_path, name):
     path = tmp_path / "a.fcsv"
     write_landmarks(path, [Landmark(name, (1, 2, 3))], Side.SOURCE)
-    assert path.read_text().splitlines()[-1].split(",")[11] == name
+    assert path.read_text(encoding="utf-8").splitlines()[-1].split(",")[11] == name
     assert read_landmarks(path, Side.SOURCE).names == (name,)
 
 
@@ -145,4 +145,8 @@ def test_every_table_is_written_by_the_one_place():
         path.name for path in source.rglob("*.py") if "formula_quoted(" in path.read_text("utf-8")
     }
     assert users == {"csv_cells.py", "csv_text.py"}
-    assert not [path.name for path in source.rglob("*.py") if "csv.writer" in path.read_text()]
+    assert not [
+        path.name
+        for path in source.rglob("*.py")
+        if "csv.writer" in path.read_text(encoding="utf-8")
+    ]

@@ -140,14 +140,14 @@ def test_any_curves_and_patches_come_back_to_the_last_bit(
     write_session(path, record)
     assert repr(read_session(path)) == repr(record)
     first = "2" if record.groups else "1"
-    assert path.read_text().startswith(f"# pinwarp-session: {first}\n")
+    assert path.read_text(encoding="utf-8").startswith(f"# pinwarp-session: {first}\n")
 
 
 def test_what_a_curve_is_called_is_no_formula_in_the_file(tmp_path: Path) -> None:
     path = tmp_path / "a.pinwarp.csv"
     group = replace(CREST, name="=1+1,-2")
     write_session(path, SessionRecord((APEX,), groups=(group, Patch("+x", ((1, 2, 3),)))))
-    for row in csv.reader(io.StringIO(path.read_text())):
+    for row in csv.reader(io.StringIO(path.read_text(encoding="utf-8"))):
         for cell in row:
             assert not cell.startswith(("=", "@", "+")) or re.fullmatch(r"[-+.\de]*", cell)
 
@@ -157,7 +157,7 @@ def test_what_a_curve_is_called_is_no_formula_in_the_file(tmp_path: Path) -> Non
 def test_a_spreadsheet_may_save_it_again(tmp_path: Path, separator: str, quotes: int) -> None:
     path = tmp_path / "a.pinwarp.csv"
     write_session(path, RECORD)
-    rows = list(csv.reader(io.StringIO(path.read_text())))
+    rows = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8"))))
     out = io.StringIO(newline="")
     writer = csv.writer(out, delimiter=separator, lineterminator="\r\n", quoting=quotes)
     for row in rows:
@@ -173,9 +173,9 @@ def test_a_spreadsheet_may_save_it_again(tmp_path: Path, separator: str, quotes:
 def test_rows_may_stand_in_another_order(tmp_path: Path) -> None:
     path = tmp_path / "a.pinwarp.csv"
     write_session(path, RECORD)
-    lines = path.read_text().splitlines(keepends=True)
+    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
     top = next(n for n, line in enumerate(lines) if line.startswith("name,"))
-    path.write_text("".join([*lines[: top + 1], *lines[:top:-1]]))
+    path.write_text("".join([*lines[: top + 1], *lines[:top:-1]]), encoding="utf-8")
     assert read_session(path) == RECORD
 
 
@@ -184,7 +184,7 @@ def test_without_where_they_had_come_to_rest_patches_keep_their_points(tmp_path:
     record = replace(RECORD, slid=None)
     write_session(path, record)
     assert read_session(path) == record
-    assert ",curve," not in path.read_text()
+    assert ",curve," not in path.read_text(encoding="utf-8")
 
 
 def test_what_had_come_to_rest_of_other_points_is_not_written(tmp_path: Path) -> None:
@@ -233,9 +233,9 @@ def test_damaged_groups_are_refused_in_words_not_half_read(
 ) -> None:
     path = tmp_path / "a.pinwarp.csv"
     write_session(path, RECORD)
-    text, times = re.subn(found, put, path.read_text())
+    text, times = re.subn(found, put, path.read_text(encoding="utf-8"))
     assert times
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     with pytest.raises(FileFormatError) as caught:
         read_session(path)
     assert words.lower() in str(caught.value).lower()

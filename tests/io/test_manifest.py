@@ -16,7 +16,7 @@ HEADER = "name,destination_landmarks"
 
 def read(tmp_path: Path, text: str):
     path = tmp_path / "study.csv"
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     return read_manifest(path)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from typing import Annotated, Any
 
@@ -12,6 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from pinwarp.cli.options import BasisOption, SessionFile, with_basis
+from pinwarp.cli.telling import tell_json
 from pinwarp.core.findings import Severity
 from pinwarp.core.lengths import Ruler
 from pinwarp.core.words import counted
@@ -55,7 +55,7 @@ def check(
         if math.isinf(opened.settings.penalty):
             about["warping_penalty"] = "inf"
         words = about | checked.as_json()
-        typer.echo(json.dumps(words, indent=2, ensure_ascii=False, allow_nan=False))
+        tell_json(words)
     else:
         _print(Console(), session.name, opened, checked)
     if strict and checked.is_flagged:

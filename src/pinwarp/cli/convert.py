@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from pinwarp.cli.options import Force
-from pinwarp.cli.telling import refuse_existing, tell_notes
+from pinwarp.cli.telling import refuse_existing, tell, tell_notes
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.core.words import counted
@@ -102,7 +102,7 @@ def convert(
         done = {output: convert_one(source, output)}
     for path, one in done.items():
         tell_notes(one.notes, source.name)
-        typer.echo(f"{path}: {counted(one.count, 'landmark')}, {one.read_as} to {one.written_as}")
+        tell(f"{path}: {counted(one.count, 'landmark')}, {one.read_as} to {one.written_as}")
         if not which and one.specimens > 1:
             tell_notes([f"{file.name}#NAME takes another, {file.name}#{ALL} each."])
 
@@ -132,4 +132,4 @@ def _with_semilandmarks(
     tell_notes((*left, *notes), source.name)
     count = counted(len(points.places) - points.landmarks, "semilandmark")
     for path in texts:
-        typer.echo(f"{path}: {counted(points.landmarks, 'landmark')}, {count}")
+        tell(f"{path}: {counted(points.landmarks, 'landmark')}, {count}")

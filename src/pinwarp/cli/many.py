@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 
 from pinwarp.cli.bars import progress_bar
-from pinwarp.cli.telling import INTERRUPTED, tell_error, tell_notes
+from pinwarp.cli.telling import INTERRUPTED, tell, tell_error, tell_notes
 from pinwarp.session.study import running
 from pinwarp.session.study.cluster import runner_of
 from pinwarp.session.study.workers import Runner, cores
@@ -71,7 +71,7 @@ def do_all(
 
         runner = runner_of(jobs or cores(), scheduler, stop, lambda words: tell_notes([words]))
         tally = run(runner, told)
-    typer.echo(
+    tell(
         f"{tally.done} done, {tally.unchanged} unchanged, {tally.failed} failed "
         f"of {tally.total}: see {out / running.SUMMARY}"
     )

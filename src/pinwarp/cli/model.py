@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,7 +9,7 @@ import typer
 
 from pinwarp.cli.many import Jobs, Scheduler, do_all
 from pinwarp.cli.options import Force
-from pinwarp.cli.telling import refuse_existing, tell_notes
+from pinwarp.cli.telling import refuse_existing, tell, tell_json, tell_notes
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.model_rows import Outcome
 from pinwarp.core.words import counted, some_of
@@ -166,13 +165,13 @@ def model(
         if found is not None:
             about["opensim"] = found.as_json()
         told = report_json(warped.rows, about)
-        typer.echo(json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False))
+        tell_json(told)
     else:
         notes = (*warped.notes, *(found.in_words() if found is not None else ()))
-        typer.echo(report_text(warped.rows, notes))
+        tell(report_text(warped.rows, notes))
         if out is not None and not dry_run:
             meshes = counted(len(warped.meshes), "mesh", "meshes")
-            typer.echo(f"{out}: {meshes} beside it, {outputs[1].name} says all of it")
+            tell(f"{out}: {meshes} beside it, {outputs[1].name} says all of it")
     if strict and warped.counts[Outcome.FLAGGED]:
         raise typer.Exit(FLAGGED)
 
@@ -213,17 +212,17 @@ def _list(path: Path, folders: list[Path], as_json: bool) -> None:
     if as_json:
         about = {"pinwarp": __version__, "model": str(opened.path), "version": opened.version}
         told = {**about, "bodies": [each.as_json() for each in bodies]}
-        typer.echo(json.dumps(told, indent=2, ensure_ascii=False))
+        tell_json(told)
         return
-    typer.echo(f"{opened.name}: {counted(len(bodies), 'body', 'bodies')}, version {opened.version}")
+    tell(f"{opened.name}: {counted(len(bodies), 'body', 'bodies')}, version {opened.version}")
     for each in bodies:
         missing = f" ({len(each.missing)} not found)" if each.missing else ""
-        typer.echo(f"{each.name}: {some_of(each.meshes) or 'no mesh'}{missing}")
+        tell(f"{each.name}: {some_of(each.meshes) or 'no mesh'}{missing}")
         if each.counts:
-            typer.echo(f"  is warped: {each.in_words}")
+            tell(f"  is warped: {each.in_words}")
         if each.kept:
             kept = [f"{name} ({kind}: {words})" for kind, name, words in each.kept]
-            typer.echo(f"  cannot be: {some_of(kept)}")
+            tell(f"  cannot be: {some_of(kept)}")
     if any(each.missing for each in bodies):
         tell_notes(["Meshes that are missing are needed only of bodies that are warped."])
 

@@ -8,13 +8,14 @@ from typing import Annotated, Protocol
 
 import typer
 
+from pinwarp.cli.telling import tell
 from pinwarp.io.file_names import is_model_file, is_session
 from pinwarp.version import __version__
 
 
 def _tell_version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"pinwarp {__version__}")
+        tell(f"pinwarp {__version__}")
         raise typer.Exit
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +14,7 @@ from rich.table import Table
 
 from pinwarp.cli.bars import stage_bar
 from pinwarp.cli.options import Force, SessionFile
-from pinwarp.cli.telling import refuse_existing, tell_notes
+from pinwarp.cli.telling import refuse_existing, tell, tell_json, tell_notes
 from pinwarp.core.errors import words_of
 from pinwarp.core.lengths import Ruler
 from pinwarp.core.words import counted
@@ -114,7 +113,7 @@ def refine(
         )
     tell_notes((*after.notes, *(() if worth is None else worth.problems)))
     if as_json:
-        typer.echo(json.dumps(_as_json(refined, before, after, worth), indent=2, allow_nan=False))
+        tell_json(_as_json(refined, before, after, worth))
         return
     console = Console()
     console.print(_table(refined, before, after))
@@ -129,10 +128,8 @@ def refine(
     )
     if worth is not None:
         console.print(_worth(refined, worth))
-        typer.echo(
-            f"Refined without them, {worth.improved} of {worth.judged} pairs are missed by less."
-        )
-    typer.echo(f"Wrote {target}")
+        tell(f"Refined without them, {worth.improved} of {worth.judged} pairs are missed by less.")
+    tell(f"Wrote {target}")
 
 
 def _table(session: Session, before: Check, after: Check) -> Table:

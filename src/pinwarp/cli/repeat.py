@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import Annotated, Any
@@ -12,7 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from pinwarp.cli.telling import tell_notes
+from pinwarp.cli.telling import tell_json, tell_notes
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.core.words import counted
@@ -104,7 +103,7 @@ def repeat(
             reason = str(error)
     if as_json:
         words = _as_json(repeats, side, found)
-        typer.echo(json.dumps(words, indent=2, ensure_ascii=False, allow_nan=False))
+        tell_json(words)
     else:
         _print(Console(), repeats, opened, found, whole)
     tell_notes([reason] if reason else [])

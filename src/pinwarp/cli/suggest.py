@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import Annotated, Any
@@ -11,7 +10,7 @@ import typer
 
 from pinwarp.cli.bars import stage_bar
 from pinwarp.cli.options import Force, SessionFile
-from pinwarp.cli.telling import refuse_existing, tell_error, tell_notes
+from pinwarp.cli.telling import refuse_existing, tell, tell_error, tell_json, tell_notes
 from pinwarp.core.errors import words_of
 from pinwarp.core.first_guess import FirstGuess, Verdict
 from pinwarp.core.lengths import Ruler
@@ -80,7 +79,7 @@ def suggest(
         )
     if guess.verdict is not Verdict.SURE:
         if as_json:
-            typer.echo(json.dumps(_figures(guess), indent=2, allow_nan=False))
+            tell_json(_figures(guess))
         tell_error(_undecided(guess))
         raise typer.Exit(ASKED if guess.verdict is Verdict.ASK else NOTHING)
     turned, reading = suggesting.mirrored_first(opened, guess.readings[0])
@@ -98,11 +97,11 @@ def suggest(
             "suggested": {ghost.name: ghost.position for ghost in ghosts},
             "beyond_the_rim": beyond,
         }
-        typer.echo(json.dumps(found, indent=2, ensure_ascii=False, allow_nan=False))
+        tell_json(found)
         return
     for label, words in _lines(guess, ghosts, placed.unit):
-        typer.echo(f"{label:<22}{words}")
-    typer.echo(f"Wrote {target}")
+        tell(f"{label:<22}{words}")
+    tell(f"Wrote {target}")
 
 
 def _undecided(guess: FirstGuess) -> str:

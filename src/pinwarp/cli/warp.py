@@ -17,7 +17,7 @@ from pinwarp.cli.options import (
     SessionFile,
     with_options,
 )
-from pinwarp.cli.telling import BAD_USAGE, refuse_existing, tell_error, tell_notes
+from pinwarp.cli.telling import BAD_USAGE, refuse_existing, tell, tell_error, tell_notes
 from pinwarp.core.errors import PinwarpError
 from pinwarp.core.landmarks import Side
 from pinwarp.core.words import counted
@@ -91,6 +91,6 @@ def warp(
             applied = warp_in_words(opened)
             points = semilandmarks_in_words(warped.result)
             count = counted(len(opened.pairs), "pair") + (f", {points}" if points else "")
-            typer.echo(f"{file.output}: {applied}, {count}")
+            tell(f"{file.output}: {applied}, {count}")
     if failed:
         raise typer.Exit(BAD_USAGE)

@@ -67,6 +67,45 @@ def is_backup(path: Path) -> bool:
     return path.name.lower().endswith(BACKUP_SUFFIX)
 
 
+def as_spelt_here(text: str) -> str:
+    """Return the name that a file gives to another as this system can look for it.
+
+    Where the locale has too few letters, Python holds stand-ins for the bytes of a name.
+
+    Raises
+    ------
+    ValueError
+        When there is a zero in it, which would end the name for the system.
+
+    Examples
+    --------
+    >>> as_spelt_here("left femur.stl")
+    'left femur.stl'
+    """
+    try:
+        known = os.fsencode(text)
+    except UnicodeEncodeError:
+        known = text.encode(errors="replace")
+    if b"\0" in known:
+        raise ValueError("no file's name holds a zero")
+    return os.fsdecode(known)
+
+
+def as_spelt_everywhere(name: str) -> str:
+    """Return a name of this system's as it is written into a file, which may be read elsewhere.
+
+    Examples
+    --------
+    >>> as_spelt_everywhere("left femur.stl")
+    'left femur.stl'
+    """
+    try:
+        # Stand-ins for bytes that are letters after all.
+        return os.fsencode(name).decode()
+    except UnicodeError:
+        return name
+
+
 def with_slashes(text: str, folder: Path) -> str:
     r"""Return the path that a text names, its parts parted as on this system.
 
@@ -85,6 +124,7 @@ def with_slashes(text: str, folder: Path) -> str:
     >>> Path(with_slashes("bones\\femur.stl", Path("/study"))).name
     'femur.stl'
     """
+    text = as_spelt_here(text)
     # On Windows both kinds part names, and lexists would only ask the disk for nothing.
     if "\\" not in text or os.sep == "\\" or os.path.lexists(folder / text):
         return text

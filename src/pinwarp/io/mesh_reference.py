@@ -8,7 +8,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from pinwarp.io.file_names import with_slashes
+from pinwarp.io.file_names import as_spelt_everywhere, as_spelt_here, with_slashes
 
 _SAID = re.compile(r"(?: sha256=(?P<sha256>\S*))?(?: vertices=(?P<vertices>\d{1,18}))?", re.ASCII)
 _BEHIND = re.compile(r"(?: sha256=\S*)?(?: vertices=\d{1,18})?$", re.ASCII)
@@ -72,8 +72,7 @@ def mesh_reference(text: str, folder: Path) -> MeshReference:
     found = _SAID.fullmatch(said)
     if not name or found is None:
         raise ValueError("a mesh is given as: PATH sha256=HASH vertices=NUMBER, or by PATH alone")
-    if not text.startswith('"'):
-        name = with_slashes(name, folder)
+    name = as_spelt_here(name) if text.startswith('"') else with_slashes(name, folder)
     # '..' is counted from the real folder, as the system would, not from a link to it.
     base = os.path.realpath(folder) if ".." in Path(name).parts else folder
     where = Path(os.path.normpath(os.path.join(base, name)))
@@ -114,6 +113,7 @@ def mesh_text(mesh: MeshReference, folder: Path | None) -> str:
         except ValueError:
             # Another drive on Windows cannot be reached by a relative path.
             text = where.as_posix()
+    text = as_spelt_everywhere(text)
     # Only what a line of text cannot hold as it is: line ends, blanks at either end, and what
     # would be taken for what stands behind a path, or for a path of Windows.
     plain = text.isprintable() and text == text.strip() and not text.startswith('"')

@@ -12,6 +12,7 @@ import numpy as np
 from pinwarp.core.mesh import Mesh
 from pinwarp.core.model_parts import MeshPart
 from pinwarp.core.placement import Placement
+from pinwarp.io.file_names import with_slashes
 from pinwarp.io.meshes import MeshFile, read_mesh
 from pinwarp.io.osim.document import Element
 from pinwarp.io.osim.model import OsimModel
@@ -65,9 +66,8 @@ def find_mesh_file(model: OsimModel, element: Element, folders: Sequence[Path] =
     folders
         Where it is looked for, too.
     """
-    # Models from Windows have its slashes.
-    name = model.text(element, "mesh_file").replace("\\", "/")
     beside = model.path.parent
+    name = with_slashes(model.text(element, "mesh_file"), beside)
     for folder in (beside, beside / FOLDER, *folders):
         place = folder / name
         if place.is_file():
