@@ -181,6 +181,14 @@ def test_one_specimen_of_several_is_converted_or_each(pinwarp_command, tmp_path)
     assert "no specimen 'x'" in outcome.stderr
 
 
+def test_specimens_whose_names_differ_by_case_alone_do_not_share_a_file(pinwarp_command, tmp_path):
+    source = tmp_path / "skulls.tps"
+    source.write_text("LM3=1\n1 2 3\nID=fem01\nLM3=1\n4 5 6\nID=FEM01\n")
+    outcome = pinwarp_command("convert", f"{source}#all", tmp_path / "all.pp", exit_code=2)
+    assert "would be written to one file" in outcome.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["skulls.tps"]
+
+
 def test_an_output_that_is_there_is_replaced_only_by_force(pinwarp_command, marks, tmp_path):
     out = tmp_path / "out.pp"
     out.write_text("precious")

@@ -102,7 +102,10 @@ def test_an_input_is_never_replaced(pinwarp_command, session, study):
     before = (study / "source.ply").read_bytes()
     link = study / "link.ply"
     link.symlink_to(study / "source.ply")
-    for out in (study / "source.ply", link):
+    # Another name of the same file, as SOURCE.PLY is one on Windows and macOS.
+    other = study / "other.ply"
+    other.hardlink_to(study / "source.ply")
+    for out in (study / "source.ply", link, other):
         outcome = pinwarp_command("warp", session, "-o", out, "--force", exit_code=2)
         assert "would be replaced, but it is read" in outcome.stderr
     assert (study / "source.ply").read_bytes() == before

@@ -161,6 +161,26 @@ def test_an_error_of_the_system_names_the_file_and_not_the_temporary_one(
     assert words_of(found.value) == f"{target}: Permission denied."
 
 
+def test_what_somebody_is_reading_just_now_is_replaced_a_moment_later(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # So Windows answers while another window, or what looks for viruses, has the file open.
+    refusals, replace = [PermissionError(13, "Access is denied")] * 2, Path.replace
+
+    def held_open(path: Path, target: Path) -> Path:
+        if refusals:
+            raise refusals.pop()
+        return replace(path, target)
+
+    monkeypatch.setattr(Path, "replace", held_open)
+    write_atomically(tmp_path / "a.csv", "old")
+    assert (tmp_path / "a.csv").read_bytes() == b"old"
+    refusals += [PermissionError(13, "Access is denied")] * 10
+    with pytest.raises(PermissionError, match="denied"):
+        write_atomically(tmp_path / "a.csv", "new")
+    assert [path.read_bytes() for path in tmp_path.iterdir()] == [b"old"]
+
+
 def test_words_of_another_writer_are_kept(tmp_path: Path) -> None:
     def fail() -> None:
         with atomic_path(tmp_path / "a.png"):

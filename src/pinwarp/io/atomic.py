@@ -17,6 +17,7 @@ from pinwarp.io.reading import refuse_special
 
 SWEPT_AFTER = 3600.0
 """Seconds after which nobody is still writing a temporary file that nothing was added to."""
+_WAITS = (0.02, 0.05, 0.1, 0.2)
 _TEMPORARY = re.compile(r"\.pinwarp-[0-9a-f]{12}(\.[^.]*)?")
 
 
@@ -93,7 +94,7 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         if target.exists():
             temporary.chmod(target.stat().st_mode & 0o7777)
         _flush(temporary)
-        temporary.replace(target)
+        _replace(temporary, target)
         if os.name == "posix":
             _flush(target.parent)
     except BaseException as error:
@@ -144,6 +145,17 @@ def _remove_if_left(entry: os.DirEntry[str], before: float) -> None:
     is_own = not hasattr(os, "getuid") or found.st_uid == os.getuid()
     if stat.S_ISREG(found.st_mode) and is_own and found.st_mtime < before:
         os.unlink(entry.path)
+
+
+def _replace(temporary: Path, target: Path) -> None:
+    """Put a file in another's place; on Windows nobody may be reading that one just now."""
+    for wait in _WAITS:
+        # Another window, or what looks for viruses, is done with it in a moment.
+        with contextlib.suppress(PermissionError):
+            temporary.replace(target)
+            return
+        time.sleep(wait)
+    temporary.replace(target)
 
 
 def _flush(path: Path) -> None:

@@ -131,6 +131,24 @@ def with_slashes(text: str, folder: Path) -> str:
     return text.replace("\\", "/")
 
 
+def session_of_body(beside: Path, whole: str, body: str) -> Path:
+    """Return where the session of a model's body is kept: beside the model or its study.
+
+    Parameters
+    ----------
+    beside
+        The file of the model, or of its study.
+    whole, body
+        How these are called; a model may call a body as no file can be.
+
+    Examples
+    --------
+    >>> session_of_body(Path("leg.osim"), "leg", "femur:r").name
+    'leg_femur_r.pinwarp.csv'
+    """
+    return beside.with_name(f"{whole}_{as_file_name(body)}{SESSION_SUFFIX}")
+
+
 def as_file_name(name: str) -> str:
     """Return a name with what no file may be called by replaced.
 

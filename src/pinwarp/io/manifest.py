@@ -39,7 +39,9 @@ _COLUMNS = (*REQUIRED, *OPTIONAL)
 
 # Windows and macOS refuse some of these, and a folder in a name would leave the output folder.
 _NOT_IN_A_NAME = re.compile(r'[\x00-\x1f\x7f/\\:*?"<>|]')
-_TAKEN_BY_WINDOWS = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
+_TAKEN_BY_WINDOWS = re.compile(
+    r"(con(in\$|out\$)?|prn|aux|nul|(com|lpt)[\d¹²³])\s*(\..*)?", re.IGNORECASE
+)
 _LONGEST_NAME = 120
 
 

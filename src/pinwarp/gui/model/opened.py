@@ -12,7 +12,7 @@ from pinwarp.gui.files.recovery import Recovery
 from pinwarp.gui.files.saving import Saving
 from pinwarp.gui.files.session_meshes import SessionMeshes
 from pinwarp.gui.tasks.file_tasks import STUDY_FILES, FileTasks, Progress
-from pinwarp.io.file_names import SESSION_SUFFIX, STUDY_SUFFIX
+from pinwarp.io.file_names import STUDY_SUFFIX, session_of_body
 from pinwarp.io.meshes import MeshFile
 from pinwarp.io.osim.bone import bone_of, bone_path, split_bone_path
 from pinwarp.io.reading import hash_of
@@ -298,7 +298,7 @@ class OpenedModel:
         path: Path | None = work.path
         if path is None:
             stem = study.name.removesuffix(STUDY_SUFFIX)
-            path = study.with_name(f"{stem}_{one.name}{SESSION_SUFFIX}")
+            path = session_of_body(study, stem, one.name)
             if path.exists():
                 path = self._ask_over(path, "is there already")
         elif work.file_sha256 is not None and hash_of(path) not in (work.file_sha256, None):
@@ -318,7 +318,7 @@ class OpenedModel:
         if self.bench is None or self.body is None:
             return None
         beside = self.bench.path or self.bench.model.path
-        return beside.with_name(f"{self.bench.name}_{self.body.name}{SESSION_SUFFIX}")
+        return session_of_body(beside, self.bench.name, self.body.name)
 
 
 def _moved(record: SessionRecord, bench: Bench, body: str) -> SessionRecord:

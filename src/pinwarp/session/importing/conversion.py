@@ -180,7 +180,8 @@ def convert_specimens(
     if not specimens:
         raise PinwarpError(f"{source.name} holds no specimens: leave out '#all'.")
     outputs = {name: output_of(name) for name in specimens}
-    if len(set(outputs.values())) < len(outputs):
+    # Many systems take upper and lower case for one.
+    if len({str(output).casefold() for output in outputs.values()}) < len(outputs):
         raise PinwarpError(
             f"Two specimens of {source.name} would be written to one file: rename one of "
             f"{some_of(specimens)}."

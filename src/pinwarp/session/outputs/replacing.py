@@ -10,7 +10,7 @@ from pinwarp.core.errors import PinwarpError
 
 
 def refuse_to_replace(inputs: Iterable[Path], outputs: Iterable[Path]) -> None:
-    """Raise when an output is one of the inputs.
+    """Raise when an output is one of the inputs, by whichever name.
 
     Raises
     ------
@@ -21,9 +21,19 @@ def refuse_to_replace(inputs: Iterable[Path], outputs: Iterable[Path]) -> None:
     --------
     >>> refuse_to_replace([Path("femur.ply")], [Path("warped/femur.ply")])
     """
-    real = {os.path.realpath(path) for path in inputs}
+    # Names alone do not tell: many systems take upper and lower case for one.
+    read = {_identity(path) for path in inputs}
     for path in outputs:
-        if os.path.realpath(path) in real:
+        if _identity(path) in read:
             raise PinwarpError(
                 f"{path} would be replaced, but it is read: choose another folder for the output."
             )
+
+
+def _identity(path: Path) -> object:
+    """Return what tells a file from others: its number, or its place while it is not there."""
+    try:
+        found = path.stat()
+    except OSError:
+        return os.path.realpath(path)
+    return found.st_dev, found.st_ino
