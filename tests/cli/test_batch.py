@@ -139,7 +139,8 @@ def test_a_name_that_only_looks_like_one_of_the_source_is_told(run, study, out):
     marks = study / "s0.csv"
     lines = marks.read_text().splitlines()
     name = lines[1].partition(",")[0]
-    marks.write_text("\n".join([lines[0], "\u200b" + lines[1], *lines[2:]]) + "\n")
+    text = "\n".join([lines[0], "\u200b" + lines[1], *lines[2:]]) + "\n"
+    marks.write_text(text, encoding="utf-8")
     run()
     assert f"'{name}' and '\\u200b{name}' look alike" in rows_of(out)["s0"]["notes"]
 
