@@ -275,8 +275,17 @@ class Driver:
         QApplication.processEvents()
 
     def press(self, key, modifier=Qt.KeyboardModifier.NoModifier, widget=None) -> None:
+        self.wait_until_in_front(widget or self.window)
         QTest.keyClick(widget or self.window, key, modifier)
         self.settle()
+
+    @staticmethod
+    def wait_until_in_front(widget) -> None:
+        """Wait until keys come to a window: no user's do before, and a dialog was there just now."""
+        window = widget.window()
+        if QApplication.activeModalWidget() is None and not window.isActiveWindow():
+            window.activateWindow()
+            assert QTest.qWaitForWindowActive(window)
 
     def trigger(self, key: str) -> None:
         self.window.actions_by_key[key].trigger()

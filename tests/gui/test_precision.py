@@ -107,7 +107,6 @@ def test_repeats_say_what_is_imprecise_and_which_penalty_belongs_to_that(user, f
     click(dialog.buttons.buttons()[0])
     user.settle()
     assert user.window.parts.precision.dialog is None
-    user.window.activateWindow()
     assert "× its spread" in tip_of(user, names[0], "residual")
     assert "× its spread" in tip_of(user, names[0], "left_out")
     # They follow a name, go with their landmark and come back with it; a file keeps them.

@@ -191,11 +191,11 @@ def test_the_other_hand_mirrors_the_source_which_can_be_undone(user, asked, gues
     assert user.editor.undo_label == "Mirror source to suggest all"
     assert user.session.source.mirrored
     assert status(user) == words.MIRRORED
-    user.window.activateWindow()
+    # Two for each that is hidden: the first turns the view.
     for _ in range(12):
         user.press(Qt.Key.Key_Space)
     pairs = user.session.pairs
-    assert len(pairs) > 5
+    assert len(pairs) >= 6
     ends = [np.array([pair.position(side) for pair in pairs]) for side in Side]
     centred = [side - side.mean(axis=0) for side in ends]
     assert np.linalg.det(centred[0].T @ centred[1]) > 0, "the pairs do not mirror"
