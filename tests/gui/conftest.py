@@ -281,7 +281,7 @@ class Driver:
 
     @staticmethod
     def wait_until_in_front(widget) -> None:
-        """Wait until keys come to a window: no user's do before, and a dialog was there just now."""
+        """Wait until keys come to a window, as after a dialog: before that no user's key does."""
         window = widget.window()
         if QApplication.activeModalWidget() is None and not window.isActiveWindow():
             window.activateWindow()

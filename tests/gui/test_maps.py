@@ -313,6 +313,14 @@ def test_without_bones_or_pairs_the_panel_says_what_is_missing(user):
     assert "three pairs" in note.text()
     assert not there(user).map_legend.isVisible()
     assert not user.window.parts.maps.panel.place_next.isVisible()
+    # It is told no longer than it is true, nor of another map than is wanted.
+    choose(user, MapKind.DISTANCE)
+    choose(user, MapKind.UNCERTAINTY)
+    assert "three pairs" in user.window.statusBar().currentMessage()
+    for side, row in ((DESTINATION, 1), (SOURCE, 2), (DESTINATION, 2)):
+        user.click_position(side, user.places_down_the_bone(side, 4)[row])
+    assert user.window.parts.maps.is_coloured
+    assert user.window.statusBar().currentMessage() == ""
 
 
 def test_opening_another_destination_measures_the_distance_to_it(sample, tmp_path):
@@ -427,6 +435,7 @@ def test_the_suggested_place_is_far_from_landmarks_and_taken_by_a_key(sample):
     sample.press(Qt.Key.Key_Space, SHIFT)
     assert "uncertainty" in sample.window.statusBar().currentMessage()
     choose(sample, MapKind.UNCERTAINTY)
+    assert sample.window.statusBar().currentMessage() == ""
     suggestion = here.drawn(Star).suggestion
     place = np.array(suggestion.position)
     assert here.surface.closest(place)[1] < 1e-4 * here.surface.diagonal

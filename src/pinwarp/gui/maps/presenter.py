@@ -41,7 +41,7 @@ class MapPresenter(Capability):
 
     ``map_changed`` emits each survey, ``folds_changed`` the folds as findings whenever they are
     others, ``survey_shown`` what there is to say of the last one, ``refused`` why something was
-    not done, in words for the user.
+    not done, in words for the user, and ``taken_back`` those words once they are true no more.
 
     Parameters
     ----------
@@ -61,6 +61,7 @@ class MapPresenter(Capability):
     folds_changed = isolated(tuple)
     survey_shown = isolated(object)
     refused = isolated(str)
+    taken_back = isolated(str)
 
     def __init__(
         self,
@@ -85,6 +86,9 @@ class MapPresenter(Capability):
         self._surveyed: Surveyed | None = None
         self._asked: SurveyRequest | None = None
         self._kept_ranges: dict[MapKind, Range] | None = None
+        # Why there is no map: what was said of it, and which one was wanted then.
+        self._excuse = ""
+        self._wanted: MapKind | None = None
         suggest = Action(
             "place_suggested",
             "Place at &Suggested Place",
@@ -174,7 +178,15 @@ class MapPresenter(Capability):
     def _stop(self) -> None:
         """Show no map instead of one that takes too long."""
         self.show_map(None)
-        self.refused.emit("Stopped: no map is shown.")
+        self._excuse_with("Stopped: no map is shown.")
+
+    def _excuse_with(self, words: str) -> None:
+        """Say why there is no map, or by nothing that what was said of that is over."""
+        before, self._excuse = self._excuse, words
+        if words:
+            self.refused.emit(words)
+        elif before:
+            self.taken_back.emit(before)
 
     def _next_map(self) -> None:
         kinds = [None, *MapKind]
@@ -198,7 +210,7 @@ class MapPresenter(Capability):
         """Place the next landmark on the source where it helps most."""
         suggestion, session = self._suggestion(), self._editor.committed
         if suggestion is None:
-            self.refused.emit(
+            self._excuse_with(
                 "Show the uncertainty first (View > Maps): it finds the place where the next "
                 "landmark helps most."
             )
@@ -252,6 +264,9 @@ class MapPresenter(Capability):
             self._show_or_ask()
 
     def _on_view(self, _view: ViewState | None = None) -> None:
+        if self._editor.view.map is not self._wanted:
+            self._wanted = self._editor.view.map
+            self._excuse_with("")
         self._show_or_ask()
 
     def _on_session(self, _session: Session) -> None:
@@ -291,9 +306,12 @@ class MapPresenter(Capability):
         kind_before = self.survey.kind if self.survey is not None else None
         self._surveyed = surveyed
         self._show()
-        if surveyed.survey.missing and surveyed.survey.kind is not kind_before:
+        survey = surveyed.survey
+        if survey.missing and survey.kind is not kind_before:
             # The panel says so all the time; who chose from the menu may not see it.
-            self.refused.emit(surveyed.survey.missing)
+            self._excuse_with(survey.missing)
+        elif survey.kind is not None and survey.missing != self._excuse:
+            self._excuse_with("")
         self.map_changed.emit(surveyed.survey)
         if surveyed.survey.findings != before:
             self.folds_changed.emit(surveyed.survey.findings)

@@ -262,6 +262,11 @@ class WindowFrame(QMainWindow):
         """Say something in passing."""
         self.statusBar().showMessage(text, MESSAGE_MS)
 
+    def unsay(self, text: str) -> None:
+        """Take back what was said in passing, where it is still read."""
+        if self.statusBar().currentMessage() == text:
+            self.statusBar().clearMessage()
+
     def note(self, words: str, reason: str) -> None:
         """Say something that holds until the window is closed."""
         label = QLabel(words)

@@ -203,6 +203,7 @@ class Parts:
 
         for said in (tasks.said, self.hand.refused, self.guidance.said, self.maps.refused):
             said.connect(say)
+        self.maps.taken_back.connect(frame.unsay)
         for side, view in views.items():
             view.files_dropped.connect(
                 lambda paths, side=side: self.documents.open_files(side, paths)
