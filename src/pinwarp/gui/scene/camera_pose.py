@@ -17,6 +17,8 @@ Matrix = NDArray[np.float64]
 
 # Share of the view that a fitted bone fills: the title and the scale bar want some room.
 FILLED = 0.86
+# So many times as long as wide, a bone stands upright whatever its frame says.
+LONG = 2.0
 # Positions less spread than this, compared with their longest direction, fix no turn about it.
 LEAST_SPREAD = 0.04
 # Squares of what is beyond, or nearer than its inverse, leave the range of numbers.
@@ -173,13 +175,20 @@ def pairing_fit(source: Sequence[Position], destination: Sequence[Position]) -> 
 def best_frame(size: ArrayLike) -> Matrix:
     """Return the frame that shows most of a bone: longest axis upright, widest across.
 
+    No anatomical frame has x upwards: only what is long stands on it.
+
     Examples
     --------
     >>> best_frame([10, 400, 60])[:, 1].tolist()
     [0.0, 1.0, 0.0]
+    >>> pelvis, femur = [280, 160, 220], [400, 60, 70]
+    >>> best_frame(pelvis)[:, 1].tolist(), best_frame(femur)[:, 1].tolist()
+    ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0])
     """
     extent = np.asarray(size, dtype=np.float64)
     up = int(np.argmax(extent))
+    if up == 0 and extent[0] < LONG * extent[1:].max():
+        up = 1 + int(np.argmax(extent[1:]))
     back = min((axis for axis in range(3) if axis != up), key=lambda axis: float(extent[axis]))
     axes = np.eye(3)
     return np.column_stack([np.cross(axes[up], axes[back]), axes[up], axes[back]])

@@ -15,8 +15,9 @@ from pinwarp.core.guessed import Reading
 from pinwarp.core.landmarks import LandmarkState, Position, Side
 from pinwarp.gui.drawn.surface import Surface, shading_normals, triangles
 from pinwarp.gui.exporting.picture import picture_of
-from pinwarp.gui.scene.camera_pose import Matrix, Pose, best_frame
+from pinwarp.gui.scene.camera_pose import Matrix, Pose
 from pinwarp.gui.scene.drawables import Bone, Drawable, Marker, Markers, Overlay, OverlayWarp
+from pinwarp.gui.scene.fronts import fronts
 from pinwarp.gui.scene.scene import Scene
 from pinwarp.gui.views.canvas import Canvas
 from pinwarp.session.session import Session
@@ -91,9 +92,8 @@ class ReadingPictures:
         return frozenset(names[row] for row in chosen)
 
     def _front(self) -> Matrix:
-        mesh = self.session.mesh(Side.SOURCE)
-        assert mesh is not None, "a reading is of two meshes"
-        return best_frame(np.ptp(mesh.bounds, axis=0))
+        bones = {side: view.bone for side, view in self.views.items() if view.bone is not None}
+        return fronts(bones, None)[Side.SOURCE]
 
     def _picture(
         self,

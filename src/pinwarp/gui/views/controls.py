@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 import numpy as np
+import pyvista as pv
 from qtpy.QtCore import QObject
 
 from pinwarp.core.alignment import Similarity
@@ -21,6 +22,7 @@ from pinwarp.gui.scene.camera_pose import (
     pairing_fit,
     standard_frame,
 )
+from pinwarp.gui.scene.fronts import fronts
 from pinwarp.gui.style.icons import icon
 from pinwarp.gui.views.camera_link import CameraLink
 from pinwarp.gui.views.canvas import Canvas
@@ -177,8 +179,20 @@ class ViewControls(Capability):
         # that come many at once are from a file: nobody is aiming at a place on the bone.
         unaligned = surfaces != self._surfaces or (self._pairs < 3 and pairs > self._pairs + 1)
         self._surfaces, self._pairs = surfaces, pairs
-        if unaligned and self.pairing_fit() is not None:
+        if unaligned and (self.pairing_fit() is not None or self._is_upside_down()):
             self.look_as_at_first()
+
+    def _is_upside_down(self) -> bool:
+        """Whether a view that has fitted its bone by itself is another way up than the pair."""
+        bones = self._bones
+        return any(
+            not np.array_equal(front, best_frame(bones[side].bounds_size))
+            for side, front in fronts(bones, None).items()
+        )
+
+    @property
+    def _bones(self) -> dict[Side, pv.PolyData]:
+        return {side: x.bone for side, x in self._views.items() if x.bone is not None}
 
     def _surfaces_now(self) -> list[object]:
         return [view.surface for view in self._views.values()]
@@ -246,11 +260,9 @@ class ViewControls(Capability):
         self._show_from(view, self.link.source_to_destination())
 
     def _show_from(self, view: StandardView, rotation: Matrix | None) -> None:
-        frames = {}
-        for side, canvas in self._views.items():
-            if canvas.bone is not None:
-                frames[side] = standard_frame(best_frame(canvas.bone.bounds_size), view)
-        self._show(frames, rotation)
+        fit = self.pairing_fit()
+        found = fronts(self._bones, None if fit is None else fit.rotation)
+        self._show({side: standard_frame(x, view) for side, x in found.items()}, rotation)
 
     def _show(self, frames: dict[Side, Matrix], rotation: Matrix | None) -> None:
         """Show both bones as a whole from given sides, or the destination as the source is."""
