@@ -7,7 +7,7 @@ import threading
 import pytest
 from qtpy.QtCore import QPoint, QRect, QSettings, Qt
 from qtpy.QtTest import QTest
-from qtpy.QtWidgets import QDockWidget
+from qtpy.QtWidgets import QApplication, QDockWidget, QStyleOptionTab, QTabBar, QToolButton
 from tests.gui.conftest import Driver, close_window, open_window
 
 from pinwarp.core.findings import FindingKind
@@ -15,6 +15,7 @@ from pinwarp.core.landmarks import Side
 from pinwarp.gui.files.file_dialogs import Answer
 from pinwarp.gui.tasks.jobs import LatestWins
 from pinwarp.gui.window.main_window import MainWindow
+from pinwarp.gui.window.text_size import write_in
 from pinwarp.session.session import Session
 
 
@@ -94,10 +95,58 @@ def test_panels_get_their_width_back_when_the_window_grows_again(user):
         assert landmarks.width() == pytest.approx(wanted, abs=3)
         window.resize(1024, 580)
         user.settle()
-        assert landmarks.width() < width
+        assert landmarks.width() == pytest.approx(width, abs=3), "its tabs need it"
         window.resize(1280, 800)
         user.settle()
         assert landmarks.width() == pytest.approx(wanted, abs=3)
+
+
+@pytest.fixture(params=[100, 125, 150])
+def text_of_any_size(qapp, request):
+    before = QApplication.font()
+    write_in(request.param)
+    yield
+    QApplication.setFont(before)
+
+
+def names_in_tabs(window):
+    """The tabs at the right edge, as they are read, and how much of their row is beyond its end."""
+    (bar,) = (x for x in window.findChildren(QTabBar) if x.isVisible() and x.count() == 6)
+    read = []
+    for row in range(bar.count()):
+        option = QStyleOptionTab()
+        bar.initStyleOption(option, row)
+        read.append(option.text)
+        words = bar.fontMetrics().horizontalAdvance(bar.tabText(row))
+        assert bar.tabRect(row).width() >= words + 16
+    return read, bar.tabRect(bar.count() - 1).right() + 1 - bar.width()
+
+
+def test_no_name_of_a_panel_is_cut_in_a_small_window_with_large_text(text_of_any_size, user):
+    window = user.window
+    docks = {dock.objectName(): dock for dock in window.findChildren(QDockWidget)}
+    docks["model"].show()
+    whole = ["Landmarks", "Warp", "Map", "Semilandmarks", "Refine", "Model"]
+    for size in ((1280, 800), (1100, 640), (1024, 580), (1280, 800)):
+        # Step by step, as a border is dragged.
+        for _ in range(2):
+            window.resize(*size)
+            user.settle()
+        assert window.width() == size[0]
+        # The front one needs most: the first and the longest in turn.
+        for front in ("semilandmarks", "landmarks"):
+            docks[front].raise_()
+            user.settle()
+            read, beyond = names_in_tabs(window)
+            assert (read, max(beyond, 0)) == (whole, 0), size
+    # Whoever makes them narrower scrolls.
+    window.resizeDocks([docks["landmarks"]], [300], Qt.Orientation.Horizontal)
+    user.settle()
+    read, beyond = names_in_tabs(window)
+    assert read == whole
+    assert beyond > 0
+    scroll = [x for x in window.findChildren(QToolButton) if isinstance(x.parent(), QTabBar)]
+    assert any(button.isVisible() for button in scroll)
 
 
 def test_new_and_close_leave_an_empty_window_and_ask_about_unsaved_work(user):

@@ -15,7 +15,6 @@ from qtpy.QtWidgets import (
     QLabel,
     QMainWindow,
     QSplitter,
-    QStyle,
     QTabWidget,
     QToolBar,
     QVBoxLayout,
@@ -82,7 +81,6 @@ class WindowFrame(QMainWindow):
         self.progress, self.cancel = progress.bar, progress.cancel
         self.shortcuts: ShortcutOverlay | None = None
         self._fitted: list[QDockWidget] = []
-        self._right: list[QDockWidget] = []
         self._actions: Sequence[QAction] = ()
         self.setWindowIcon(icon("pinwarp"))
         self.resize(SIZE)
@@ -177,27 +175,16 @@ class WindowFrame(QMainWindow):
                 dock.hide()
         self.setTabPosition(RIGHT, QTabWidget.TabPosition.North)
         self._front = right[0]
-        self._right = right
-        self._right_edge = RightEdge(self, right)
-        self._front.raise_()
-        # The table keeps the whole height of the right edge, unless large text needs the width.
         below = [panel.widget for panel in panels if panel.area != RIGHT]
-        widest = max((widget.minimumSizeHint().width() for widget in below), default=0)
-        fits = widest + RIGHT_WIDTH <= SIZE.width()
-        self.setCorner(
-            Qt.Corner.BottomRightCorner, RIGHT if fits else Qt.DockWidgetArea.BottomDockWidgetArea
-        )
-        self._give_right_its_width()
+        self._right_edge = RightEdge(self, right, below)
+        self._front.raise_()
+        self._right_edge.want(self._right_width)
         self._fit_docks()
         return docks
 
-    def _give_right_its_width(self) -> None:
-        """Make the right edge as wide as its tabs, those counted that are not open yet."""
-        beside = self.style().pixelMetric(QStyle.PixelMetric.PM_TabBarTabHSpace)
-        words = self.fontMetrics()
-        # A tab in front has a pixel on either side for its frame.
-        tabs = sum(words.horizontalAdvance(x.windowTitle()) + beside + 2 for x in self._right)
-        self._right_edge.want(max(RIGHT_WIDTH, tabs))
+    @property
+    def _right_width(self) -> int:
+        return max(RIGHT_WIDTH, self._right_edge.least)
 
     def _fit_docks(self) -> None:
         for dock in self._fitted:
@@ -287,7 +274,7 @@ class WindowFrame(QMainWindow):
         """Put docks and toolbar where they stood before anybody moved them."""
         self.restoreState(self._first_layout)
         self._front.raise_()
-        self._give_right_its_width()
+        self._right_edge.want(self._right_width)
         self._fit_docks()
 
     def take_floats_away(self) -> None:
