@@ -24,8 +24,9 @@ from pinwarp.session.view import LinkMode
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
 # The destination lies on its back in another corner of the room, a tenth larger, in metres.
+# It lies along x, and its front is the other one's back.
 TURNED = Similarity(
-    np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]),
+    np.array([[0.0, 0.0, -1.0], [0.0, -1.0, 0.0], [-1.0, 0.0, 0.0]]),
     0.0011,
     np.array([0.4, -2, 1.0]),
 )
