@@ -29,7 +29,6 @@ from pinwarp.io.samples import assets_folder, sample_session
 from pinwarp.session.keeping.recovery import LostWork
 from pinwarp.session.model.warped import WarpedModel
 
-
 # Software draws in the test's own thread: the other cores have tests of their own.
 os.environ.setdefault("LP_NUM_THREADS", "0")
 
