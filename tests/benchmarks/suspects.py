@@ -8,13 +8,13 @@ from typing import Any
 from pinwarp.core.findings import Finding, FindingKind, Severity
 from pinwarp.core.mirror import is_mirrored
 from pinwarp.core.suspects import suspects
-from tests.core.mistaken import MadeUp, made_up, smooth, stationary
+from tests.core.mistaken import MadeUp, heavy_tailed, made_up, smooth, stationary
 
 Row = dict[str, Any]
 Found = list[Finding]
 Judged = tuple[MadeUp, Found]
 
-FIELDS = {"stationary": stationary, "smooth": smooth}
+FIELDS = {"stationary": stationary, "smooth": smooth, "heavy-tailed": heavy_tailed}
 SIZES = (7, 10, 16, 25, 60, 150, 300, 600)
 # About how many landmarks are judged in each cell of the table; no fewer sets than the least.
 WORK, LEAST, MOST = 9000, 20, 600

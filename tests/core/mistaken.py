@@ -70,6 +70,12 @@ def smooth(factor: SourceFactor, rng: np.random.Generator) -> np.ndarray:
     return destination
 
 
+def heavy_tailed(factor: SourceFactor, rng: np.random.Generator) -> np.ndarray:
+    """A smooth field of landmarks digitised by people: most well, a few of them badly."""
+    noise = 0.01 * diagonal(factor.source) * rng.standard_t(4, size=factor.source.shape)
+    return smooth(factor, rng) + noise
+
+
 Field = Callable[[SourceFactor, np.random.Generator], np.ndarray]
 
 

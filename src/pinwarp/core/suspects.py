@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from itertools import chain
-from math import comb
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -41,14 +40,14 @@ MOST_WRONG = 0.3
 ALIKE, LOOKED_AT = 1.0, 3
 # What each free coordinate of a displaced pair costs against an exchange, in nats.
 FREE_COORDINATE = 2.0
-# Up to so many pairs, some that hide one another are looked for, and so many of them; in more
-# pairs, each of two exchanged must be as unlikely as this by itself.
-FEW, MOST_HIDDEN, DOUBTFUL = 40, 3, 0.02
+# Of more pairs than this each of two exchanged must be as unlikely as that by itself, and those
+# that hide one another are looked for from the strangest alone.
+FEW, DOUBTFUL = 40, 0.02
 # ... and leaving out both must not explain more than their exchange by this share of its gain.
 BOTH_DISPLACED = 0.2
-# Of more pairs so many at most are left out one after the other, each for so many nats besides
-# the choice of it.
-MOST_MASKED, PLAIN = 60, 3.0
+# Of those that hide one another so many at most are left out one after the other, each for so many
+# nats besides the choice of it; chosen together, each must be so many times clearer.
+MOST_HIDDEN, PLAIN, CLEARER = 60, 3.0, 4.0
 # Exchanges are tried among so many of the strangest pairs.
 EXCHANGED = 30
 _TINY = 1e-300
@@ -133,11 +132,10 @@ class _Search:
             if self._free_count(seen) == 0:
                 return
             exchange = self._exchanged(seen)
-            judge = self._beside_the_bone
-            found = [exchange] if exchange else self._one_or_two(seen, STRICT, judge)
-            if not found:
-                few = len(self._free) <= FEW
-                found = self._hidden(seen) if few else self._masked(seen)
+            found = (
+                [exchange] if exchange else self._one_or_two(seen, STRICT, self._beside_the_bone)
+            )
+            found = found or self._hidden(seen)
             if not found:
                 return
             yield from found
@@ -194,69 +192,48 @@ class _Search:
         return [row for row in order if alone[row] > max(alone[order[0]] - within, -np.inf)]
 
     def _hidden(self, seen: Evidence) -> list[Finding]:
-        """Find a few pairs that hide one another: each is judged without the others."""
+        """Find some that hide one another: each is judged without the others."""
+        starts = self._strangest(seen)[: LOOKED_AT if len(self._free) <= FEW else 1]
+        found = (self._clearer(self._hiding(seen, start), seen) for start in starts)
+        return next(filter(None, found), [])
+
+    def _hiding(self, seen: Evidence, start: int) -> list[int]:
+        """Return a pair and what is strange without it, left out one by one."""
         count = self._free_count(seen)
-        for number in range(2, MOST_HIDDEN + 1):
-            if seen.freedom < LEAST_FREEDOM + number:
-                return []
-            choices = comb(count, number)
-            limit = STRICT / choices
-            # Of more than two only those that the strangest leads to.
-            starts = self._strangest(seen)[: LOOKED_AT if number == 2 else 1]
-            sets = [rows for first in starts if (rows := self._hiding(first, number))]
-            found = [one for one in self._each(sets, limit) if _worst(one) < limit]
-            if found:
-                best = min(found, key=_worst)
-                for row, _ in best:
-                    self._leave_out(row)
-                return [
-                    self._finding((row,), chance, _worst(best) * choices) for row, chance in best
-                ]
-        return []
-
-    def _hiding(self, first: int, number: int) -> list[int]:
-        """Return so many pairs, each the strangest without those before; none where too few."""
-        rows = [first]
-        while len(rows) < number:
-            following = self._strangest(self._without(*rows))
-            if not following:
-                return []
-            rows.append(following[0])
-        return rows[::-1]
-
-    def _masked(self, seen: Evidence) -> list[Finding]:
-        """Find several of many pairs, left out one by one while that explains a lot."""
-        count, out = self._free_count(seen), seen
-        named = int(np.sum(~self._free))
-        rows: list[int] = []
-        while len(rows) < min(MOST_MASKED, MOST_WRONG * len(self._free) - named):
+        named = len(self._free) - int(np.sum(self._free))
+        rows, out = [start], self._without(start)
+        while len(rows) < min(MOST_HIDDEN, MOST_WRONG * len(self._free) - named):
             strangest = self._strangest(out)[:1]
             gains = out.one_wrong[out.level, strangest] - out.nothing_wrong[out.level]
             if out.freedom <= LEAST_FREEDOM or not np.any(gains > np.log(count) + PLAIN):
                 break
             rows += strangest
             out = self._without(*rows)
+        return rows
+
+    def _clearer(self, rows: list[int], seen: Evidence) -> list[Finding]:
+        """Name those of some that are strange without the others, two or more."""
+        count = self._free_count(seen)
         while len(rows) > 1:
-            (judged,) = self._each([rows], WORTH_A_LOOK / count)
-            doubted = [row for row, chance in judged if chance.value < WORTH_A_LOOK / count]
+            judged = self._each(rows, WORTH_A_LOOK / count)
+            doubted = [row for row, x in judged if x.value < WORTH_A_LOOK / count]
             if doubted == rows:
-                found = [(row, x) for row, x in judged if x.value < STRICT / count]
+                chosen = CLEARER * count
+                found = [(row, x) for row, x in judged if x.value * chosen < STRICT]
+                if len(found) == 1:
+                    # By itself it hides nobody.
+                    return []
                 for row, _ in found:
                     self._leave_out(row)
-                return [self._finding((row,), x, x.value * count) for row, x in found]
+                return [self._finding((row,), x, x.value * chosen) for row, x in found]
             # Those that are ordinary without the others are among the others.
             rows = doubted
         return []
 
-    def _each(self, sets: list[list[int]], limit: float) -> list[list[tuple[int, Chance]]]:
-        """Judge each pair of some sets without the others of its set."""
-        asked = [
-            (self._without(*(other for other in rows if other != row)), row)
-            for rows in sets
-            for row in rows
-        ]
-        chances = iter(self._beside_the_bone(asked, limit))
-        return [[(row, next(chances)) for row in rows] for rows in sets]
+    def _each(self, rows: list[int], limit: float) -> list[tuple[int, Chance]]:
+        """Judge each of some pairs without the others of them."""
+        asked = [(self._without(*(other for other in rows if other != row)), row) for row in rows]
+        return list(zip(rows, self._beside_the_bone(asked, limit), strict=True))
 
     def _beside_the_bone(self, asked: list[Asked], limit: float) -> list[Chance]:
         """Judge pairs: those that are off by little beside the bone are the less unlikely."""
@@ -300,7 +277,3 @@ class _Search:
         asked = [(self._without(out), row) for out, row in ((i, j), (j, i))]
         asked = [(others, row) for others, row in asked if others.kept[row]]
         return any(x.value >= DOUBTFUL for x in self._pairs.chances(asked))
-
-
-def _worst(judged: list[tuple[int, Chance]]) -> float:
-    return max(chance.value for _, chance in judged)
