@@ -49,8 +49,20 @@ def _open_window(
         os.environ.update(_WITHOUT_DISPLAY)
     # Qt and VTK are loaded only once a window is wanted.
     os.environ.setdefault("QT_API", "pyside6")
-    from pinwarp.gui.app import run
-    from pinwarp.gui.files.documents import Opening
+    try:
+        from pinwarp.gui.app import run
+        from pinwarp.gui.files.documents import Opening
+    except ImportError as error:
+        library = re.match(r"(lib\S+\.so\S*): cannot open", str(error))
+        if library is None:
+            raise
+        print(
+            f"pinwarp: the window needs {library[1]}, which comes with the system and is missing "
+            "here. On Debian and Ubuntu:\n"
+            "    sudo apt install libgl1 libegl1 libfontconfig1 fonts-dejavu-core",
+            file=sys.stderr,
+        )
+        return 2
 
     landmarks = (source_landmarks, destination_landmarks)
     opening = Opening(session, source, destination, *landmarks, model, passengers)

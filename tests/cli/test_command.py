@@ -12,6 +12,7 @@ import pytest
 from PIL import Image
 
 import pinwarp
+from pinwarp.__main__ import main
 from pinwarp.io.samples import sample_session
 
 HEAVY = {"qtpy", "PySide6", "pyvista", "vtk", "vtkmodules", "matplotlib"}
@@ -128,6 +129,25 @@ def test_a_display_that_does_not_answer_is_no_display():
     outcome = run("--demo", DISPLAY=":7777")
     assert outcome.returncode == 2
     assert "there is no display" in outcome.stderr
+
+
+def test_a_system_that_cannot_draw_is_told_what_it_lacks(monkeypatch, capsys):
+    class Lacking:
+        @staticmethod
+        def find_spec(name, *_):
+            if name == "pinwarp.gui.app":
+                raise ImportError("libGL.so.1: cannot open shared object file: No such file")
+
+    monkeypatch.setattr(sys, "meta_path", [Lacking, *sys.meta_path])
+    monkeypatch.delitem(sys.modules, "pinwarp.gui.app", raising=False)
+    monkeypatch.setenv("QT_QPA_PLATFORM", os.environ.get("QT_QPA_PLATFORM", "xcb"))
+    monkeypatch.setattr(sys, "argv", ["pinwarp", "--demo"])
+    with pytest.raises(SystemExit) as end:
+        main()
+    assert end.value.code == 2
+    told = capsys.readouterr().err
+    assert "the window needs libGL.so.1" in told
+    assert "sudo apt install libgl1" in told
 
 
 def test_a_picture_of_the_sample_is_written(tmp_path):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+import os
 import re
 from pathlib import Path
 
@@ -95,9 +96,11 @@ def test_in_no_cell_of_landmarks(tmp_path, formula, name):
 @each_formula
 def test_in_no_cell_and_no_line_of_a_session(tmp_path, formula):
     path = tmp_path / "a.pinwarp.csv"
+    # As the system spells it, which may have no such letters.
+    mesh = tmp_path / os.fsdecode(f"a,{formula.replace('/', '')}.stl".encode())
     record = SessionRecord(
         (Landmark(formula, (-1, 2, 3), note=formula, extra=((formula, formula),)),),
-        source_mesh=MeshReference(tmp_path / f"a,{formula.replace('/', '')}.stl", "ab", 3),
+        source_mesh=MeshReference(mesh, "ab", 3),
         unit=f"mm,{formula}",
         unknown=(("by", f'Ada; "{formula}'), ("", f"x,\t{formula}")),
     )
