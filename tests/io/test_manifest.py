@@ -130,6 +130,17 @@ def test_two_names_that_look_the_same_are_refused(tmp_path, one, other):
     assert "was used in line 2 in letters that look the same" in error.reason
 
 
+@pytest.mark.parametrize("name", ["con", "COM1.left", "com²", "NUL .a", "conin$", "anna.", "a:b"])
+def test_what_windows_takes_for_a_device_is_no_subject(tmp_path, name):
+    assert "file" in str(problem(tmp_path, f"{HEADER}\n{name},a.csv\n"))
+
+
+@pytest.mark.parametrize("name", ["control", "com", "auxiliary.1", "lpt10"])
+def test_what_only_begins_like_a_device_is_a_subject(tmp_path, name):
+    (subject,) = read(tmp_path, f"{HEADER}\n{name},a.csv\n").subjects
+    assert subject.name == name
+
+
 def test_a_name_is_taken_also_where_its_row_cannot_be_used(tmp_path):
     assert "was used in line 2" in problem(tmp_path, f"{HEADER}\nanna\nanna,a.csv\n").reason
 
