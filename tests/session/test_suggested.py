@@ -16,6 +16,7 @@ from pinwarp.session.judging.check import check
 from pinwarp.session.judging.report import report_of
 from pinwarp.session.keeping.files import read_session, write_session
 from pinwarp.session.session import Session
+from pinwarp.session.suggesting.guessing import known_pairs
 from pinwarp.session.warp.solved import solved
 
 SOURCE, DESTINATION = Side.SOURCE, Side.DESTINATION
@@ -48,14 +49,15 @@ def test_a_landmark_is_suggested_by_its_note_and_only_with_a_destination():
         assert replace(apex, note=note).state is LandmarkState.PAIRED, note
     assert not replace(apex, note="suggested", destination=None).is_suggested
     assert replace(apex, note="suggested", enabled=False).state is LandmarkState.DISABLED
-    assert apex.confirmed() is apex
+    assert apex.by_hand() is apex
 
 
 def test_suggesting_twice_says_it_once_and_keeps_the_rest_of_the_note():
     apex = Landmark("apex", (0, 0, 0), note="worn; deep")
     twice = apex.suggested((1, 0, 0)).suggested((2, 0, 0))
     assert (twice.note, twice.destination) == ("worn; deep; suggested", (2, 0, 0))
-    assert twice.confirmed().note == "worn; deep"
+    assert twice.by_hand().note == "worn; deep"
+    assert twice.accepted().note == "worn; deep; accepted unmoved"
 
 
 def test_confirming_moving_and_deleting_end_it_and_undo_brings_it_back(session):
@@ -72,7 +74,7 @@ def test_confirming_moving_and_deleting_end_it_and_undo_brings_it_back(session):
         assert suggested(editor.session) == left
         editor.undo()
         assert editor.session == session
-    assert edits.confirm(session, "p0").landmark("p0").note == "worn; deep"
+    assert edits.confirm(session, "p0").landmark("p0").note == "worn; deep; accepted unmoved"
     bare = edits.remove_side(edits.remove_side(session, "p1", DESTINATION), "p1", SOURCE)
     assert bare.landmark("p1").note == ""
 
@@ -101,6 +103,40 @@ def test_check_and_report_count_them_and_say_what_to_do(session):
     checked = check(session)
     assert checked.suggested == 0
     assert not any(x.finding.kind is FindingKind.SUGGESTED for x in checked.findings)
+    # Somebody has looked, but what was left where it was proves nothing.
+    words = "3 of 10 pairs are as proposed, accepted unmoved. They prove nothing: "
+    found = next(x for x in checked.findings if x.finding.kind is FindingKind.ACCEPTED)
+    assert found.sentence.startswith(words)
+    assert (found.names, found.severity) == (("p0", "p1", "p2"), Severity.REMARK)
+    report = report_of("bones", solved(session), datetime(2026, 11, 22))
+    told = dict(report.facts)["Pairs"]
+    assert told == "10 of 10 landmarks, 3 as proposed (accepted unmoved)"
+    assert found.sentence in report.findings
+
+
+def test_what_was_accepted_unmoved_is_known_until_it_is_moved(session, tmp_path):
+    place = (1.0, 2.0, 3.0)
+    bare = edits.remove_side(session, "p5", DESTINATION)
+    taken = edits.accept(bare, "p5", DESTINATION, place)
+    assert taken.landmark("p5").is_accepted
+    assert taken.landmark("p5").state is LandmarkState.PAIRED
+    write_session(tmp_path / "bones.pinwarp.csv", taken)
+    assert read_session(tmp_path / "bones.pinwarp.csv").landmarks == taken.landmarks
+    for edit in (
+        lambda s: edits.move(s, "p5", DESTINATION, (1.0, 2.0, 3.5)),
+        lambda s: edits.move(s, "p5", SOURCE, place),
+        lambda s: edits.remove_side(s, "p5", DESTINATION),
+        lambda s: edits.swap_destinations(s, "p5", "p6"),
+    ):
+        assert not edit(taken).landmark("p5").is_accepted
+        assert edit(taken).landmark("p5").note == ""
+
+
+def test_a_first_guess_learns_nothing_from_what_was_accepted_unmoved(session):
+    known = [pair.name for pair in known_pairs(edits.confirm(session, "p1"))]
+    assert known == [f"p{i}" for i in range(3, 10)]
+    moved = edits.move(session, "p1", DESTINATION, (1.0, 2.0, 3.0))
+    assert "p1" in [pair.name for pair in known_pairs(moved)]
 
 
 def test_a_session_file_keeps_it(session, tmp_path):

@@ -58,6 +58,7 @@ class FindingKind(StrEnum):
     WORTH_A_LOOK = "worth a look"
     ISOLATED = "isolated"
     SUGGESTED = "suggested"
+    ACCEPTED = "accepted unmoved"
     ELSEWHERE = "elsewhere"
     FAR = "far from the mesh"
     UNITS = "different units"
@@ -66,7 +67,12 @@ class FindingKind(StrEnum):
     def severity(self) -> Severity:
         """How bad it is: what lists, marks, their order and strict checks go by."""
         match self:
-            case FindingKind.WORTH_A_LOOK | FindingKind.ISOLATED | FindingKind.UNITS:
+            case (
+                FindingKind.WORTH_A_LOOK
+                | FindingKind.ISOLATED
+                | FindingKind.ACCEPTED
+                | FindingKind.UNITS
+            ):
                 return Severity.REMARK
             case (
                 FindingKind.CLOSE
@@ -99,15 +105,16 @@ class Finding:
         fold the number of its vertices. For swapped or displaced pairs, either of two and what is
         worth a look, the chance that a set without a mistake shows as much; for an isolated
         landmark the distance to the nearest; for a mirrored set what a reflection leaves of the
-        misfit, for suggested destinations how many there are. For landmarks elsewhere, in another
-        frame or unit than their mesh, or far from it, the median distance from it; for meshes in
-        different units how many times as large as the source the destination is.
+        misfit, for suggested destinations and accepted pairs how many there are. For landmarks
+        elsewhere, in another frame or unit than their mesh, or far from it, the median distance
+        from it; for meshes in different units how many times as large as the source the
+        destination is.
     others
         Further figures (mesh units): for a displaced pair, either of two and what is worth a look
         how far it lies from where the other pairs expect it and how far is usual there; for an
-        isolated landmark its leave-one-out error; for suggested destinations of how many they are,
-        for landmarks elsewhere their distance when they are read right, for those far from their
-        mesh how large it is.
+        isolated landmark its leave-one-out error; for suggested destinations and accepted pairs of
+        how many they are, for landmarks elsewhere their distance when they are read right, for
+        those far from their mesh how large it is.
     """
 
     kind: FindingKind
@@ -230,6 +237,14 @@ class Finding:
                 return (
                     f"{self.value:.0f} of {counted(int(self.others[0]), 'destination landmark')} "
                     f"{verb} only suggested: look at {each}."
+                )
+            case FindingKind.ACCEPTED:
+                verb, each = ("is", "It") if self.value == 1 else ("are", "They")
+                proves = "proves" if self.value == 1 else "prove"
+                return (
+                    f"{self.value:.0f} of {counted(int(self.others[0]), 'pair')} {verb} as "
+                    f"proposed, accepted unmoved. {each} {proves} nothing: the leave-one-out error "
+                    "and the uncertainty look smaller than they are."
                 )
             case FindingKind.ELSEWHERE:
                 return (

@@ -16,6 +16,8 @@ Position = tuple[float, float, float]
 
 # What a note says of a destination that nobody has looked at yet, beside what else it says.
 SUGGESTED = "suggested"
+# And of a pair where somebody has looked, and left it where the program had put it.
+ACCEPTED = "accepted unmoved"
 _BETWEEN_REMARKS = ";"
 
 
@@ -78,7 +80,7 @@ class Landmark:
         A disabled pair is kept but does not take part.
     note
         Free text. Its remark "suggested", alone or behind a semicolon, says that nobody has looked
-        at the destination yet.
+        at the destination yet; "accepted unmoved", that it was left where it was expected.
     extra
         Columns of a session file that this version does not know, kept as they came.
     locked
@@ -178,19 +180,30 @@ class Landmark:
         Examples
         --------
         >>> fovea = Landmark("fovea", source=(0, 0, 0), note="deep").suggested((1, 0, 0))
-        >>> fovea.note, fovea.state.value, fovea.confirmed().note
-        ('deep; suggested', 'suggested', 'deep')
+        >>> fovea.note, fovea.state.value, fovea.accepted().note
+        ('deep; suggested', 'suggested', 'deep; accepted unmoved')
         """
-        placed = self.placed(Side.DESTINATION, position)
-        remarks = [*placed.confirmed()._remarks(), SUGGESTED]
-        return replace(placed, note=f"{_BETWEEN_REMARKS} ".join(remarks))
+        return self.placed(Side.DESTINATION, position)._with_remark(SUGGESTED)
 
-    def confirmed(self) -> Landmark:
-        """Return it with the destination that it has, looked at by somebody."""
-        if SUGGESTED not in self._remarks():
-            return self
-        remarks = [remark for remark in self._remarks() if remark != SUGGESTED]
-        return replace(self, note=f"{_BETWEEN_REMARKS} ".join(remarks))
+    @property
+    def is_accepted(self) -> bool:
+        """Whether it was left where the program had put it: a pair that proves nothing."""
+        return self.is_complete and ACCEPTED in self.note and ACCEPTED in self._remarks()
+
+    def accepted(self) -> Landmark:
+        """Return it with the places that it has, looked at by somebody and left unmoved."""
+        return self._with_remark(ACCEPTED)
+
+    def by_hand(self) -> Landmark:
+        """Return it with the places that it has, chosen by somebody."""
+        return self._with_remark(None)
+
+    def _with_remark(self, remark: str | None) -> Landmark:
+        """Say of its places this, and nothing else."""
+        before = self._remarks()
+        after = [one for one in before if one not in (SUGGESTED, ACCEPTED)]
+        after += [remark] if remark is not None else []
+        return self if after == before else replace(self, note=f"{_BETWEEN_REMARKS} ".join(after))
 
     def _remarks(self) -> list[str]:
         return [remark for part in self.note.split(_BETWEEN_REMARKS) if (remark := part.strip())]

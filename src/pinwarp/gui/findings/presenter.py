@@ -43,6 +43,8 @@ _OF_PAIRS = (
 )
 # These are about the penalty and the solve, and told where the penalty is set.
 _TOLD_ELSEWHERE = (FindingKind.NEARLY_PLANAR, FindingKind.POLE)
+# What is suggested has a sign of its own in the table, and nothing is wrong with what was accepted.
+_WITHOUT_SIGN = (FindingKind.SUGGESTED, FindingKind.ACCEPTED)
 
 
 class FindingsPresenter(Capability):
@@ -203,8 +205,7 @@ class FindingsPresenter(Capability):
         found = gravest_first((*(x.by(rulers) for x in astray), *found))
         self._found = tuple(one for one in found if one.finding.kind not in _TOLD_ELSEWHERE)
         self._table.model.show_findings(
-            # What is suggested has its sign as a state.
-            [one for one in self._found if one.finding.kind is not FindingKind.SUGGESTED]
+            [one for one in self._found if one.finding.kind not in _WITHOUT_SIGN]
         )
         judged_pairs = any(one.finding.kind in _OF_PAIRS for one in self._found)
         words = judged_at(session, rulers.session) if judged_pairs else ""

@@ -12,6 +12,7 @@ from pinwarp.core.findings import FindingKind
 from pinwarp.core.lengths import Ruler, rounding_among
 from pinwarp.core.spline import PenaltyConvention
 from pinwarp.gui.style import theme
+from pinwarp.session.judging.suggested import about_suggested
 from pinwarp.session.session import Session
 from pinwarp.session.warp.result import WarpResult
 
@@ -51,6 +52,7 @@ class PenaltyFigures(QWidget):
             "Leave-one-out", "RMS distance by which each landmark is missed when it is left out"
         )
         self.pairs = FigureLabel("Pairs", "Landmarks placed on both meshes that take part")
+        self._refined, self._doubt = "", ""
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(theme.SPACE)
@@ -61,11 +63,23 @@ class PenaltyFigures(QWidget):
     def show_result(self, result: WarpResult | None, ruler: Ruler) -> None:
         """Show residual and pairs of a warp."""
         refined = result is not None and result.inputs.refinement is not None
-        for figure in (self.flexibility, self.left_out):
-            figure.show_more(_LANDMARKS_ONLY if refined else "")
+        self._refined = _LANDMARKS_ONLY if refined else ""
+        self.flexibility.show_more(self._refined)
+        self._show_tips()
         rms = tidy_residual(result)
         self.residual.show_text(NO_FIGURE if rms is None else ruler.text(rms))
         self.pairs.show_text(str(len(result.inputs.source) if result is not None else 0))
+
+    def show_session(self, session: Session) -> None:
+        """Say which pairs of a session prove nothing."""
+        accepted = FindingKind.ACCEPTED
+        told = [x.sentence for x in about_suggested(session) if x.finding.kind is accepted]
+        self._doubt = "".join(f".\n{sentence}" for sentence in told)
+        self._show_tips()
+
+    def _show_tips(self) -> None:
+        self.left_out.show_more(self._refined + self._doubt)
+        self.pairs.show_more(self._doubt)
 
     def show_flexibility(self, flexibility: float | None) -> None:
         """Show the flexibility, or that there is none to speak of."""

@@ -235,7 +235,7 @@ class Hand(Capability):
             return
         # What was said of a view that has turned is over; what is said of the next is not.
         self.refused.emit("")
-        session = edits.move(self._editor.committed, ghost.name, ghost.side, ghost.position)
+        session = edits.accept(self._editor.committed, ghost.name, ghost.side, ghost.position)
         self._placed(session, f"Accept {ghost.name}", ghost.name, ghost.side)
 
     def _tell_turned(self, name: str) -> None:

@@ -32,6 +32,7 @@ from pinwarp.session.editor import Editor
 from pinwarp.session.guide import step_at
 from pinwarp.session.session import Session
 from pinwarp.session.suggesting import mirrored_first, why_not
+from pinwarp.session.suggesting.guessing import known_pairs
 
 # Nothing was changed for so long (ms): what was guessed is warped anew, to what was accepted.
 REST_MS = 1500
@@ -229,7 +230,7 @@ class Suggesting(Capability):
 
     def _warp_anew(self) -> None:
         session, taken = self._editor.committed, self.expected.taken
-        if taken is None or not self.expected.ghosts() or len(session.pairs) < FEWEST_ANEW:
+        if taken is None or not self.expected.ghosts() or len(known_pairs(session)) < FEWEST_ANEW:
             return
         if self._editor.is_previewing:
             self.rest.start()

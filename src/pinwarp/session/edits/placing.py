@@ -12,6 +12,7 @@ from pinwarp.session.naming import NAME_PATTERN, PASSENGER_PATTERN, is_automatic
 from pinwarp.session.session import Session
 
 __all__ = [
+    "accept",
     "add_passenger",
     "confirm",
     "move",
@@ -93,8 +94,22 @@ def move(session: Session, name: str, side: Side, position: Position) -> Session
     return changed(session, name, lambda landmark: _put(landmark, side, position))
 
 
+def accept(session: Session, name: str, side: Side, position: Position) -> Session:
+    """Put one side of a landmark where it is expected, and remember that it was not chosen.
+
+    Examples
+    --------
+    >>> session = Session(landmarks=(Landmark("a", (0, 0, 0)),))
+    >>> there = accept(session, "a", Side.DESTINATION, (1, 0, 0))
+    >>> moved = move(there, "a", Side.DESTINATION, (1, 0, 2))
+    >>> there.landmark("a").is_accepted, moved.landmark("a").is_accepted
+    (True, False)
+    """
+    return changed(session, name, lambda landmark: _put(landmark, side, position).accepted())
+
+
 def confirm(session: Session, name: str) -> Session:
-    """Say that somebody has looked at a destination that was only suggested.
+    """Say that somebody has looked at a destination that was only suggested, and left it there.
 
     Examples
     --------
@@ -102,12 +117,13 @@ def confirm(session: Session, name: str) -> Session:
     >>> confirm(session, "a").landmark("a").state.value
     'paired'
     """
-    return changed(session, name, Landmark.confirmed)
+    return changed(session, name, Landmark.accepted)
 
 
 def _put(landmark: Landmark, side: Side, position: Position | None) -> Landmark:
     placed = landmark.placed(side, position)
-    return placed.confirmed() if side is Side.DESTINATION else placed
+    # Nobody has looked at a suggested destination because its source was moved.
+    return placed if placed.is_suggested and side is Side.SOURCE else placed.by_hand()
 
 
 def swap_destinations(session: Session, name: str, other: str) -> Session:

@@ -210,6 +210,8 @@ def _of_model(elements: Sequence[ElementRow]) -> list[ReportRow]:
 def _pairs_text(session: Session) -> str:
     suggested = sum(pair.is_suggested for pair in session.pairs)
     only = f", {suggested} of them only suggested" if suggested else ""
+    accepted = sum(pair.is_accepted for pair in session.pairs)
+    only += f", {accepted} as proposed (accepted unmoved)" if accepted else ""
     return f"{len(session.pairs)} of {len(session.landmarks)} landmarks{only}"
 
 

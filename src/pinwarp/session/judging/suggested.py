@@ -1,4 +1,4 @@
-"""Which destinations of a session were only suggested: nobody has looked at them yet."""
+"""Which pairs of a session the program has placed: seen by nobody yet, or accepted unmoved."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pinwarp.session.session import Session
 
 
 def about_suggested(session: Session) -> tuple[NamedFinding, ...]:
-    """Return what is to be said of suggested destinations; nothing where there are none.
+    """Return what is to be said of pairs that the program has placed; nothing where none are.
 
     Parameters
     ----------
@@ -24,9 +24,12 @@ def about_suggested(session: Session) -> tuple[NamedFinding, ...]:
     ['1 of 2 destination landmarks is only suggested: look at it.']
     """
     pairs = session.pairs
-    rows = tuple(row for row, pair in enumerate(pairs) if pair.is_suggested)
-    if not rows:
-        return ()
-    finding = Finding(FindingKind.SUGGESTED, rows, len(rows), (len(pairs),))
-    names = tuple(pairs[row].name for row in rows)
-    return (NamedFinding(finding, names, finding.describe()),)
+    suggested = [row for row, pair in enumerate(pairs) if pair.is_suggested]
+    accepted = [row for row, pair in enumerate(pairs) if pair.is_accepted]
+    told = []
+    for kind, rows in ((FindingKind.SUGGESTED, suggested), (FindingKind.ACCEPTED, accepted)):
+        if rows:
+            finding = Finding(kind, tuple(rows), len(rows), (len(pairs),))
+            names = tuple(pairs[row].name for row in rows)
+            told.append(NamedFinding(finding, names, finding.describe()))
+    return tuple(told)

@@ -63,8 +63,11 @@ def missing_of(session: Session) -> tuple[Landmark, ...]:
 
 
 def known_pairs(session: Session) -> tuple[Landmark, ...]:
-    """Return the pairs that somebody has seen on both sides, in the order of the table."""
-    return tuple(pair for pair in session.pairs if not pair.is_suggested)
+    """Return the pairs that somebody has placed, in the order of the table.
+
+    What was left where a guess had put it tells the next one nothing.
+    """
+    return tuple(pair for pair in session.pairs if not (pair.is_suggested or pair.is_accepted))
 
 
 @dataclass(frozen=True, eq=False)
