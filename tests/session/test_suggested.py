@@ -14,6 +14,7 @@ from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.check import check
 from pinwarp.session.judging.report import report_of
+from pinwarp.session.judging.suggested import about_suggested
 from pinwarp.session.keeping.files import read_session, write_session
 from pinwarp.session.session import Session
 from pinwarp.session.suggesting.guessing import known_pairs
@@ -104,14 +105,27 @@ def test_check_and_report_count_them_and_say_what_to_do(session):
     assert checked.suggested == 0
     assert not any(x.finding.kind is FindingKind.SUGGESTED for x in checked.findings)
     # Somebody has looked, but what was left where it was proves nothing.
-    words = "3 of 10 pairs are as proposed, accepted unmoved. They prove nothing: "
+    words = "3 of 10 pairs are as proposed, accepted unmoved. They prove nothing, and the "
     found = next(x for x in checked.findings if x.finding.kind is FindingKind.ACCEPTED)
     assert found.sentence.startswith(words)
+    # Of the others alone is what it would be without them.
+    rest = replace(session, landmarks=session.landmarks[3:])
+    alone = check(rest).rms_leave_one_out
+    assert found.finding.others == (10, pytest.approx(alone))
+    assert found.sentence.endswith(f"; of the others alone it is {alone:.3g} mm.")
     assert (found.names, found.severity) == (("p0", "p1", "p2"), Severity.REMARK)
     report = report_of("bones", solved(session), datetime(2026, 11, 22))
     told = dict(report.facts)["Pairs"]
     assert told == "10 of 10 landmarks, 3 as proposed (accepted unmoved)"
     assert found.sentence in report.findings
+
+
+def test_with_too_few_others_no_error_of_theirs_is_told(session):
+    for pair in session.landmarks[:6]:
+        session = edits.confirm(session, pair.name)
+    (found,) = about_suggested(session)
+    assert found.finding.others == (10,)
+    assert found.sentence.endswith("look smaller than they are.")
 
 
 def test_what_was_accepted_unmoved_is_known_until_it_is_moved(session, tmp_path):

@@ -113,7 +113,8 @@ class Finding:
         Further figures (mesh units): for a displaced pair, either of two and what is worth a look
         how far it lies from where the other pairs expect it and how far is usual there; for an
         isolated landmark its leave-one-out error; for suggested destinations and accepted pairs of
-        how many they are, for landmarks elsewhere their distance when they are read right, for
+        how many they are, and for the latter the leave-one-out error of the others alone where
+        it is known; for landmarks elsewhere their distance when they are read right, for
         those far from their mesh how large it is.
     """
 
@@ -239,12 +240,12 @@ class Finding:
                     f"{verb} only suggested: look at {each}."
                 )
             case FindingKind.ACCEPTED:
-                verb, each = ("is", "It") if self.value == 1 else ("are", "They")
-                proves = "proves" if self.value == 1 else "prove"
+                verb, proves = ("is", "It proves") if self.value == 1 else ("are", "They prove")
+                alone = "" if len(self.others) < 2 else f"; of the others alone it is {usual}"
                 return (
                     f"{self.value:.0f} of {counted(int(self.others[0]), 'pair')} {verb} as "
-                    f"proposed, accepted unmoved. {each} {proves} nothing: the leave-one-out error "
-                    "and the uncertainty look smaller than they are."
+                    f"proposed, accepted unmoved. {proves} nothing, and the leave-one-out error "
+                    f"and the uncertainty look smaller than they are{alone}."
                 )
             case FindingKind.ELSEWHERE:
                 return (

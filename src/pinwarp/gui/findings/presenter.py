@@ -201,7 +201,7 @@ class FindingsPresenter(Capability):
         if judged is not None:
             found += named_findings(folds, judged, session, rulers.session)
         # Folds come behind what causes them, what is only isolated last.
-        found = (*different_units(session), *found, *about_suggested(session))
+        found = (*different_units(session), *found, *about_suggested(session, rulers.destination))
         found = gravest_first((*(x.by(rulers) for x in astray), *found))
         self._found = tuple(one for one in found if one.finding.kind not in _TOLD_ELSEWHERE)
         self._table.model.show_findings(

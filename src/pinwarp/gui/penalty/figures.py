@@ -70,10 +70,10 @@ class PenaltyFigures(QWidget):
         self.residual.show_text(NO_FIGURE if rms is None else ruler.text(rms))
         self.pairs.show_text(str(len(result.inputs.source) if result is not None else 0))
 
-    def show_session(self, session: Session) -> None:
+    def show_session(self, session: Session, ruler: Ruler) -> None:
         """Say which pairs of a session prove nothing."""
         accepted = FindingKind.ACCEPTED
-        told = [x.sentence for x in about_suggested(session) if x.finding.kind is accepted]
+        told = [x.sentence for x in about_suggested(session, ruler) if x.finding.kind is accepted]
         self._doubt = "".join(f".\n{sentence}" for sentence in told)
         self._show_tips()
 

@@ -162,7 +162,7 @@ class PenaltyPanel(QWidget):
         if equation_of(session) != equation_of(before):
             self._show_curve()
         if session.landmarks is not before.landmarks:
-            self.figures.show_session(session)
+            self.figures.show_session(session, self._rulers.destination)
         self.exact.show_session(session)
         self._place_handle()
 
