@@ -125,6 +125,7 @@ def test_by_space_alone_all_are_accepted_each_seen_first_and_undo_brings_the_las
     (sentence,) = (one for one in told if one.startswith("10 of 10 pairs are as proposed"))
     figures = user.window.parts.penalty.panel.figures
     assert all(sentence in figure.toolTip() for figure in (figures.left_out, figures.pairs))
+    assert "<b>0 + 10</b>" in figures.pairs.text()
     assert status(user) == words.ALL_TAKEN
     assert not bar(user).isVisible()
     user.press(Z, CONTROL)

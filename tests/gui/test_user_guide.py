@@ -29,6 +29,7 @@ def guide(user):
     """The guide, opened by its key."""
     QTest.keyClick(user.window, Qt.Key.Key_F1)
     user.settle()
+    user.wait_until_in_front(user.window.parts.user_guide.window)
     return user.window.parts.user_guide.window
 
 

@@ -105,14 +105,14 @@ def test_check_and_report_count_them_and_say_what_to_do(session):
     assert checked.suggested == 0
     assert not any(x.finding.kind is FindingKind.SUGGESTED for x in checked.findings)
     # Somebody has looked, but what was left where it was proves nothing.
-    words = "3 of 10 pairs are as proposed, accepted unmoved. They prove nothing, and the "
+    words = "3 of 10 pairs are as proposed, accepted unmoved. They prove nothing: "
     found = next(x for x in checked.findings if x.finding.kind is FindingKind.ACCEPTED)
     assert found.sentence.startswith(words)
     # Of the others alone is what it would be without them.
     rest = replace(session, landmarks=session.landmarks[3:])
     alone = check(rest).rms_leave_one_out
     assert found.finding.others == (10, pytest.approx(alone))
-    assert found.sentence.endswith(f"; of the others alone it is {alone:.3g} mm.")
+    assert found.sentence.endswith(f"error of the others alone is {alone:.3g} mm.")
     assert (found.names, found.severity) == (("p0", "p1", "p2"), Severity.REMARK)
     report = report_of("bones", solved(session), datetime(2026, 11, 22))
     told = dict(report.facts)["Pairs"]
@@ -125,7 +125,7 @@ def test_with_too_few_others_no_error_of_theirs_is_told(session):
         session = edits.confirm(session, pair.name)
     (found,) = about_suggested(session)
     assert found.finding.others == (10,)
-    assert found.sentence.endswith("look smaller than they are.")
+    assert found.sentence.endswith("count them as if they did.")
 
 
 def test_what_was_accepted_unmoved_is_known_until_it_is_moved(session, tmp_path):

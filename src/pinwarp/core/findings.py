@@ -241,11 +241,11 @@ class Finding:
                 )
             case FindingKind.ACCEPTED:
                 verb, proves = ("is", "It proves") if self.value == 1 else ("are", "They prove")
-                alone = "" if len(self.others) < 2 else f"; of the others alone it is {usual}"
+                counts = "the leave-one-out error and the uncertainty count them as if they did"
+                alone = f"the leave-one-out error of the others alone is {usual}"
                 return (
                     f"{self.value:.0f} of {counted(int(self.others[0]), 'pair')} {verb} as "
-                    f"proposed, accepted unmoved. {proves} nothing, and the leave-one-out error "
-                    f"and the uncertainty look smaller than they are{alone}."
+                    f"proposed, accepted unmoved. {proves} nothing: {alone if usual else counts}."
                 )
             case FindingKind.ELSEWHERE:
                 return (

@@ -52,7 +52,7 @@ class PenaltyFigures(QWidget):
             "Leave-one-out", "RMS distance by which each landmark is missed when it is left out"
         )
         self.pairs = FigureLabel("Pairs", "Landmarks placed on both meshes that take part")
-        self._refined, self._doubt = "", ""
+        self._refined, self._doubt, self._accepted = "", "", 0
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(theme.SPACE)
@@ -68,13 +68,17 @@ class PenaltyFigures(QWidget):
         self._show_tips()
         rms = tidy_residual(result)
         self.residual.show_text(NO_FIGURE if rms is None else ruler.text(rms))
-        self.pairs.show_text(str(len(result.inputs.source) if result is not None else 0))
+        count = len(result.inputs.source) if result is not None else 0
+        # The one is evidence, the other is not.
+        accepted = min(self._accepted, count)
+        self.pairs.show_text(f"{count - accepted} + {accepted}" if accepted else str(count))
 
     def show_session(self, session: Session, ruler: Ruler) -> None:
         """Say which pairs of a session prove nothing."""
-        accepted = FindingKind.ACCEPTED
-        told = [x.sentence for x in about_suggested(session, ruler) if x.finding.kind is accepted]
-        self._doubt = "".join(f".\n{sentence}" for sentence in told)
+        kind, found = FindingKind.ACCEPTED, about_suggested(session, ruler)
+        accepted = [one for one in found if one.finding.kind is kind]
+        self._accepted = sum(len(one.names) for one in accepted)
+        self._doubt = "".join(f".\n{one.sentence}" for one in accepted)
         self._show_tips()
 
     def _show_tips(self) -> None:
