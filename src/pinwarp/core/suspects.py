@@ -193,23 +193,28 @@ class _Search:
 
     def _hidden(self, seen: Evidence) -> list[Finding]:
         """Find some that hide one another: each is judged without the others."""
-        starts = self._strangest(seen)[: LOOKED_AT if len(self._free) <= FEW else 1]
-        found = (self._clearer(self._hiding(seen, start), seen) for start in starts)
+        few = len(self._free) <= FEW
+        starts = self._strangest(seen) if few else self._telling(seen)
+        found = (self._clearer(self._hiding(start), seen) for start in starts)
         return next(filter(None, found), [])
 
-    def _hiding(self, seen: Evidence, start: int) -> list[int]:
+    def _hiding(self, start: int) -> list[int]:
         """Return a pair and what is strange without it, left out one by one."""
-        count = self._free_count(seen)
         named = len(self._free) - int(np.sum(self._free))
         rows, out = [start], self._without(start)
         while len(rows) < min(MOST_HIDDEN, MOST_WRONG * len(self._free) - named):
-            strangest = self._strangest(out)[:1]
-            gains = out.one_wrong[out.level, strangest] - out.nothing_wrong[out.level]
-            if out.freedom <= LEAST_FREEDOM or not np.any(gains > np.log(count) + PLAIN):
+            following = self._telling(out) if out.freedom > LEAST_FREEDOM else []
+            if not following:
                 break
-            rows += strangest
+            rows += following
             out = self._without(*rows)
         return rows
+
+    def _telling(self, seen: Evidence) -> list[int]:
+        """Return the strangest pair where leaving it out explains a lot."""
+        clear = np.log(self._free_count(seen)) + PLAIN + seen.nothing_wrong[seen.level]
+        rows = self._strangest(seen)[:1]
+        return [row for row in rows if seen.one_wrong[seen.level, row] > clear]
 
     def _clearer(self, rows: list[int], seen: Evidence) -> list[Finding]:
         """Name those of some that are strange without the others, two or more."""
