@@ -29,7 +29,7 @@ WHOLE_SET = 4.0
 # Degrees of freedom that a tail may have, and what a heavy one costs: so few free pairs do not tell
 # it from a mistake; of twice as many it costs a quarter, since they do.
 TAILS = np.array([2.0, 2.5, 3.5, 5.0, 7.0, 10.0, 16.0, 30.0, 100.0])
-HEAVY, FEW = 12.0, 30
+HEAVY, FEW = 12.0, 40
 # What the density of F(3, m) has of m alone.
 TAIL_DENSITY = gammaln((TAILS + 3) / 2) - gammaln(TAILS / 2) - 1.5 * np.log(TAILS)
 # So many pairs' worth of belief that the scale is right; steps to find it.
