@@ -399,12 +399,10 @@ def test_units_that_were_left_are_listed_with_the_ways_to_scale(user):
     assert first.text() == "Scale the Source by 1,000"
     assert second.text() == "Scale the Destination by 1/1,000"
 
-    def pick():
-        QTest.keyClick(row.which, Qt.Key.Key_Down)
-        QTest.keyClick(row.which, Qt.Key.Key_Return)
-
-    QTimer.singleShot(50, row.which, pick)
     QTest.mouseClick(row.remedy, Qt.MouseButton.LeftButton)
+    user.qtbot.waitUntil(row.which.isVisible)
+    QTest.keyClick(row.which, Qt.Key.Key_Down)
+    QTest.keyClick(row.which, Qt.Key.Key_Return)
     user.settle()
     assert user.editor.undo_label == "Scale source by 1,000"
     assert user.session.mesh(SOURCE).diagonal > 100

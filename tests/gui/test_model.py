@@ -27,6 +27,7 @@ from pinwarp.gui.scene.model_drawables import ModelElements
 from pinwarp.io.meshes import write_mesh
 from pinwarp.io.osim.bone import bone_of
 from pinwarp.io.osim.reading import read_model
+from pinwarp.session.keeping.files import read_session
 from pinwarp.session.keeping.journal import WORK
 from pinwarp.session.model.elements import OutlineKind
 from pinwarp.session.model.study import read_study
@@ -385,7 +386,11 @@ def test_after_a_crash_the_bodies_that_were_set_aside_are_offered_too(
     pair_body(user)
     choose_body(user, "shank")
     pair_body(user, 6)
-    user.qtbot.waitUntil(lambda: len([*state_folder.glob(f"windows/*/{WORK}")]) == 2, timeout=9000)
+
+    def kept():
+        return {len(read_session(x).pairs) for x in state_folder.glob(f"windows/*/{WORK}")}
+
+    user.qtbot.waitUntil(lambda: kept() == {6, 24}, timeout=9000)
     shutil.copytree(state_folder, tmp_path / "after" / "state")
 
     dialogs = ScriptedDialogs()

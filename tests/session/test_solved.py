@@ -205,6 +205,7 @@ def test_every_kind_of_finding_has_one_severity():
     assert {kind for kind in FindingKind if kind.severity is Severity.REMARK} == {
         FindingKind.WORTH_A_LOOK,
         FindingKind.ISOLATED,
+        FindingKind.ACCEPTED,
         FindingKind.UNITS,
     }
 
