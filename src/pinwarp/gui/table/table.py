@@ -62,7 +62,9 @@ class LandmarkTable(QTableView):
             cells.refused.connect(self.refused)
         self._painted_at = -math.inf
         self._reading = QTimer(self, singleShot=True)
-        self._reading.timeout.connect(self.viewport().update)
+        self._reading.timeout.connect(self._paint_behind)
+        # Rows and columns, first and last: Qt would forget cells that it is not told of at once.
+        self._behind: set[tuple[int, int, int, int]] = set()
         self._rendering = False
         self._fitting = False
         self._set_up_rows()
@@ -292,8 +294,17 @@ class LandmarkTable(QTableView):
         # An open cell wants to know.
         if too_soon <= 0 or self.state() == QAbstractItemView.State.EditingState:
             super().dataChanged(first, last, roles)
-        elif not self._reading.isActive():
+            return
+        self._behind.add((first.row(), first.column(), last.row(), last.column()))
+        if not self._reading.isActive():
             self._reading.start(math.ceil(too_soon))
+
+    def _paint_behind(self) -> None:
+        """Show the figures that have changed since, and no more: names take longest."""
+        behind, self._behind = self._behind, set()
+        for top, left, bottom, right in behind:
+            first, last = self.order.index(top, left), self.order.index(bottom, right)
+            self.viewport().update(self.visualRect(first) | self.visualRect(last))
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Say what to do where there is nothing to show."""
