@@ -190,6 +190,11 @@ class Landmark:
         """Whether it was left where the program had put it: a pair that proves nothing."""
         return self.is_complete and ACCEPTED in self.note and ACCEPTED in self._remarks()
 
+    @property
+    def is_by_hand(self) -> bool:
+        """Whether somebody has placed it: neither suggested only, nor accepted unmoved."""
+        return not (self.is_suggested or self.is_accepted)
+
     def accepted(self) -> Landmark:
         """Return it with the places that it has, looked at by somebody and left unmoved."""
         return self._with_remark(ACCEPTED)

@@ -54,7 +54,7 @@ def about_suggested(session: Session, ruler: Ruler | None = None) -> tuple[Named
 
 def _alone(session: Session) -> tuple[float, ...]:
     """Return the leave-one-out error of the pairs that somebody has placed, where there is one."""
-    pairs = [pair for pair in session.pairs if not (pair.is_suggested or pair.is_accepted)]
+    pairs = [pair for pair in session.pairs if pair.is_by_hand]
     settings = session.settings
     if not (LEAST_PAIRS <= len(pairs) <= MOST_PAIRS and settings.is_regular):
         return ()

@@ -67,7 +67,7 @@ def known_pairs(session: Session) -> tuple[Landmark, ...]:
 
     What was left where a guess had put it tells the next one nothing.
     """
-    return tuple(pair for pair in session.pairs if not (pair.is_suggested or pair.is_accepted))
+    return tuple(pair for pair in session.pairs if pair.is_by_hand)
 
 
 @dataclass(frozen=True, eq=False)
