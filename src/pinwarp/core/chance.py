@@ -29,7 +29,7 @@ WHOLE_SET = 4.0
 # Degrees of freedom that a tail may have, and what a heavy one costs: so few free pairs do not tell
 # it from a mistake; of twice as many it costs a quarter, since they do.
 TAILS = np.array([2.0, 2.5, 3.5, 5.0, 7.0, 10.0, 16.0, 30.0, 100.0])
-HEAVY, FEW = 12.0, 40
+HEAVY, FEW_FREE = 12.0, 40
 # What the density of F(3, m) has of m alone.
 TAIL_DENSITY = gammaln((TAILS + 3) / 2) - gammaln(TAILS / 2) - 1.5 * np.log(TAILS)
 # So many pairs' worth of belief that the scale is right; steps to find it.
@@ -252,7 +252,7 @@ def _tail(
     likely -= (TAILS + 3) / 2 * np.log1p(share, out=share).sum(axis=2)
     # So many dependent figures say no more than their freedom.
     likely *= freedom[:, None] / count
-    heavy = HEAVY / np.maximum(freedom / FEW, 1.0) ** 2
+    heavy = HEAVY / np.maximum(freedom / FEW_FREE, 1.0) ** 2
     likely -= heavy[:, None] / TAILS + 1.5 * SCALE * (1 / scale + np.log(scale) - 1)
     shares = np.exp(likely - likely.max(axis=1, keepdims=True))
     return shares / shares.sum(axis=1, keepdims=True), scale

@@ -177,10 +177,12 @@ class SourceFactor:
         ``mean(lambda / (lambda + penalty))``, the effective degrees of freedom beyond the affine
         ones (Wahba 1990, eq. 4.3.1), of the regularising convention. NaN without any modes.
         """
-        values = self.poles
-        if not len(values):
+        if not len(self.poles):
             return float("nan")
-        return float(np.mean(values / (values + penalty)))
+        return float(self._flexibilities(np.array([penalty]))[0])
+
+    def _flexibilities(self, penalties: Matrix) -> Matrix:
+        return np.asarray(np.mean(self.poles / (self.poles + penalties[:, None]), axis=1))
 
     def penalty_at(self, flexibility: float) -> float:
         """Return the penalty that leaves that much flexibility (inverse of :meth:`flexibility`).
@@ -200,7 +202,7 @@ class SourceFactor:
         low, high = np.log(values[0]) - 40.0, np.log(values[-1]) + 40.0
         for _ in range(10):
             tried = np.linspace(low, high, 65)
-            left = np.mean(values / (values + np.exp(tried)[:, None]), axis=1)
+            left = self._flexibilities(np.exp(tried))
             reached = int(np.clip(np.searchsorted(-left, -flexibility), 1, 64))
             low, high = tried[reached - 1], tried[reached]
         return float(np.exp(0.5 * (low + high)))
