@@ -161,8 +161,6 @@ class PenaltyPanel(QWidget):
         before, self._session = self._session, session
         if equation_of(session) != equation_of(before):
             self._show_curve()
-        if session.landmarks is not before.landmarks:
-            self.figures.show_session(session, self._rulers.destination)
         self.exact.show_session(session)
         self._place_handle()
 

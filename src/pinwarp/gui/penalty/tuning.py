@@ -16,6 +16,7 @@ from pinwarp.gui.warp.warps import Warps
 from pinwarp.session import edits
 from pinwarp.session.editor import Editor
 from pinwarp.session.judging.quality import Quality
+from pinwarp.session.session import Session
 from pinwarp.session.view import ViewState
 from pinwarp.session.warp.result import WarpResult
 
@@ -64,7 +65,7 @@ class PenaltyTuning(Capability):
         )
         self._connect()
         self.panel.show_rulers(editor.rulers)
-        self.panel.show_session(editor.session)
+        self._on_session(editor.session)
         self._on_quality(quality.quality)
         self.panel.show_plot(editor.view.curve)
 
@@ -80,7 +81,7 @@ class PenaltyTuning(Capability):
             lambda unit: editor.commit(edits.set_unit(editor.committed, unit), "Change unit")
         )
         editor.rulers_changed.connect(panel.show_rulers)
-        editor.session_changed.connect(panel.show_session)
+        editor.session_changed.connect(self._on_session)
         editor.view_changed.connect(self._on_view)
         self._warps.result_changed.connect(self._on_result)
         self._warps.figures_changed.connect(panel.show_result)
@@ -89,13 +90,19 @@ class PenaltyTuning(Capability):
     def shut_down(self) -> None:
         """Let go of the editor, the warps and the figures."""
         self._editor.rulers_changed.disconnect(self.panel.show_rulers)
-        self._editor.session_changed.disconnect(self.panel.show_session)
+        self._editor.session_changed.disconnect(self._on_session)
         self._editor.view_changed.disconnect(self._on_view)
         self._warps.result_changed.disconnect(self._on_result)
         self._warps.figures_changed.disconnect(self.panel.show_result)
         self._quality.quality_changed.disconnect(self._on_quality)
 
     # What changed
+
+    def _on_session(self, session: Session) -> None:
+        self.panel.show_session(session)
+        if not self._editor.is_previewing:
+            # What the pairs by hand say alone takes a solve: none under a hand that moves.
+            self.panel.figures.show_session(session, self._editor.rulers.destination)
 
     def _on_result(self, result: WarpResult) -> None:
         # Of a landmark that moves the figures follow when it is dropped: only the slider's is live.
